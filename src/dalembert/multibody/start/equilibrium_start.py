@@ -173,7 +173,7 @@ def _smallest_step(matrix: csr_matrix, forces: np.ndarray, n: int) -> np.ndarray
 
     None where they are loaded, and for many unknowns.
     """
-    if len(forces) > _DENSE:
+    if len(forces) > _DENSE or not (np.isfinite(forces).all() and np.isfinite(matrix.data).all()):
         return None
     # Constraints as stiff as the stiffest motion: without that their singular values are its reciprocal.
     scale = np.ones(len(forces))

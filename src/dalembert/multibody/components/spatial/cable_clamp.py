@@ -5,7 +5,7 @@ Local coordinates: those of the marker, as side a of a pair, then position r and
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
-from dalembert.multibody.components.spatial.cable_element import NODE
+from dalembert.multibody.components.spatial.spatial_cable_element import NODE
 from dalembert.multibody.components.spatial.conditions import MEETS, Condition, constraint_of, forces_of
 from dalembert.multibody.components.spatial.directors import POSE
 from dalembert.multibody.components.spatial.spatial_joint import REACTIONS, observe_reactions
@@ -47,6 +47,7 @@ def _observe(x, v, a, p, m, inputs, out):
         r[i] = 0.0
     _forces(x, p, m, r)
     observe_reactions(x, p, m, r, out)
+    # The force on the slope turns the end of the line: r' x f, which a point mass would not have.
     moment = times(-1.0, cross(at(x, SLOPE), at(r, SLOPE)))
     add_at(out, 3, moment)
     add_at(out, 9, (dot(e1(x, p, m), moment), dot(e2(x, p, m), moment), dot(e3(x, p, m), moment)))

@@ -128,7 +128,7 @@ class Shape(Checked):
                 return None
             corners, triangles = mesh[0] * np.real(self.sizes), mesh[1]
         else:
-            corners, triangles = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
+            corners, triangles, _ = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
         axes = np.real(self.pose.orientation.matrix)
         return Surface(corners @ axes.T + np.real(self.pose.position), triangles)
 

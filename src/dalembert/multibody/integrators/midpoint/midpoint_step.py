@@ -250,7 +250,8 @@ def converge(
             if abs(gap[k]) <= closed:
                 gap[k] = 0.0
         remaining = largest_entry(f, 0, n)
-        if iteration == 1:  # of the prediction, and of the constraints
+        # Of the prediction, and of the constraints: forces within stiff bodies cancel in the first, not in the others.
+        if iteration == 1:
             force = max(remaining, largest_entry(s.x0, n, size))
         # The difference of both equations: M (b - a) + (J(q_1)^T l_1 - J(q_0)^T l_0) = 0.
         add_product(n, matrices, mass, first, 1.0, gap)

@@ -6,7 +6,7 @@ import pytest
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 from dalembert.errors import InputError, ModelError
-from dalembert.multibody.components.spatial.cable_element import CABLE, stretches
+from dalembert.multibody.components.spatial.spatial_cable_element import CABLE, stretches
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.model.evaluate import energies, residual
 from dalembert.multibody.model.lowering import lower

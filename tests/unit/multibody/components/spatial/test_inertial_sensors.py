@@ -170,7 +170,7 @@ def test_wrong_inputs() -> None:
     with refused(
         ModelError,
         snapshot(
-            "InertialSensor 'imu': mass.centre has no direction; use the channels ax, ay and az of the point mass, or a rigid body"
+            "InertialSensor 'imu': mass.centre has no direction; use the channels ax, ay and az of the point, or a rigid body"
         ),
     ):
         mb.simulate(system, 0.1)

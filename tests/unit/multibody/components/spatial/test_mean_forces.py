@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from dalembert.multibody.components.spatial.beam_element import BEAMS
-from dalembert.multibody.components.spatial.cable_element import CABLE
+from dalembert.multibody.components.spatial.spatial_cable_element import CABLE
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.model.evaluate import energies, residual
 from dalembert.multibody.model.lowering import lower

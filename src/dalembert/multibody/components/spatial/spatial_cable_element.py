@@ -91,7 +91,8 @@ def residual(x, v, a, p, m, inputs, r):
         s1, s2, s5 = A1[g] * across, A2[g], A5[g]
         f = _line(s1, s2, s5, x)
         inverse = reciprocal(root(dot(f, f)))
-        strain = 1.0 - (1.0 + rests[g]) * inverse  # over |f|
+        # (|f| - 1 - rest) / |f|, so that the force along f needs no division by |f|.
+        strain = 1.0 - (1.0 + rests[g]) * inverse
         if not is_zero(delay):
             strain += delay * dot(f, _line(s1, s2, s5, v)) * inverse * inverse
         force = times(AW[g] * h * p.axial * strain, f)
@@ -106,6 +107,7 @@ def residual(x, v, a, p, m, inputs, r):
         if not is_zero(delay):
             rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)
             moment = plus(kappa, times(delay, rate))
+        # 1 / f.f of the virtual work goes into the moment once, for both forces.
         on_slope, on_bend = _bent(times(BW[g] * h * p.bending * square, moment), f, c, kappa)
         first = _gathered(first, s1, on_slope, c1, on_bend)
         second, fifth = _gathered(second, s2, on_slope, c2, on_bend), _gathered(fifth, s5, on_slope, c5, on_bend)
@@ -213,6 +215,7 @@ def mean(x, v, a, p, m, inputs, step, r):
         by_a, by_b, by_d = times(0.5 * size * across * across, _discrete_gradient(start, end, before, after))
         on_slope = plus(times(2.0 * by_a, f), times(h * by_b, c))
         on_bend = plus(times(2.0 * h * h * by_d, c), times(h * by_b, f))
+        # The damping of bending is that of the middle: its moment turns with the line, and no invariant has its rate.
         if not is_zero(delay):
             kappa, square = _curvature(f, c)
             rate = _curvature_rate(f, c, _line(s1, s2, s5, v), _line(c1, c2, c5, v), kappa, square)

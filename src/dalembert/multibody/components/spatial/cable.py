@@ -17,10 +17,10 @@ from dalembert.multibody.components.node_chain import NodeChain
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.beam_turns import turn_findings
-from dalembert.multibody.components.spatial.spatial_cable_element import CABLE, NODE, WIDTH
 from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
 from dalembert.multibody.components.spatial.spatial_body import GRADIENT, Body, Marker, pose_modes
+from dalembert.multibody.components.spatial.spatial_cable_element import CABLE, NODE, WIDTH
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows
 
 

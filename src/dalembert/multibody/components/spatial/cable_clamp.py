@@ -5,9 +5,9 @@ Local coordinates: those of the marker, as side a of a pair, then position r and
 
 from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
-from dalembert.multibody.components.spatial.spatial_cable_element import NODE
 from dalembert.multibody.components.spatial.conditions import MEETS, Condition, constraint_of, forces_of
 from dalembert.multibody.components.spatial.directors import POSE
+from dalembert.multibody.components.spatial.spatial_cable_element import NODE
 from dalembert.multibody.components.spatial.spatial_joint import REACTIONS, observe_reactions
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.spatial_pairs import INTEGERS, LENGTHS, NUMBERS, E, e1, e2, e3, push_a_axis

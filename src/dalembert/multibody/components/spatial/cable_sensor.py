@@ -11,9 +11,9 @@ from dalembert.kernels.kernel import inlined
 from dalembert.kernels.views import stack
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial.cable import Cable, cable_of
-from dalembert.multibody.components.spatial.spatial_cable_element import CABLE, NODE, WIDTH, residual
 from dalembert.multibody.components.spatial.kinds import no_energy, no_residual
 from dalembert.multibody.components.spatial.line_force import add_to_cable, force_of, signals_along
+from dalembert.multibody.components.spatial.spatial_cable_element import CABLE, NODE, WIDTH, residual
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows, first_coordinate
 from dalembert.multibody.components.spatial.vectors import at, cross, dot, times

@@ -16,8 +16,8 @@ from dalembert.multibody.components.spatial.beam import Beam, beam_of
 from dalembert.multibody.components.spatial.beam_element import MOST_DEGREE
 from dalembert.multibody.components.spatial.beam_shapes import rule
 from dalembert.multibody.components.spatial.cable import Cable
-from dalembert.multibody.components.spatial.spatial_cable_element import WIDTH
 from dalembert.multibody.components.spatial.directors import POSE
+from dalembert.multibody.components.spatial.spatial_cable_element import WIDTH
 from dalembert.multibody.components.spatial.spatial_load import Load
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows, first_coordinate

@@ -10,8 +10,8 @@ from dalembert.errors import ModelError
 from dalembert.multibody.components.points import Point
 from dalembert.multibody.components.spatial.cable import Cable
 from dalembert.multibody.components.spatial.cable_clamp import CLAMP, SLOPE
-from dalembert.multibody.components.spatial.spatial_cable_element import NODE
 from dalembert.multibody.components.spatial.conditions import MEETS, perpendicular
+from dalembert.multibody.components.spatial.spatial_cable_element import NODE
 from dalembert.multibody.components.spatial.spatial_joint import Joint, axis_in_space, joint_kind
 from dalembert.multibody.components.spatial.spatial_markers import SLOTS
 from dalembert.multibody.components.spatial.spatial_rows import SpatialRows

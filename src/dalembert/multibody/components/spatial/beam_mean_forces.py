@@ -75,6 +75,7 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any], inertia_energies: 
         rate = delay / step
         n, m = full_product(c, plus(u, times(rate, du)), plus(w, times(rate, dw)))
         n, m = times(size, n), times(size, m)
+        # The gradient of the strains is that at the mean of the invariants, where f is the mean stress.
         p0, p = weighed(values, mean)
         q0, q = weighed(slopes, mean)
         q0, q = across * q0, times(across, q)
@@ -135,6 +136,7 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any], inertia_energies: 
     @inlined
     def fill_ends(x, v, step, x0, x1):
         for i in range(width):
+            # The midpoint rule moves coordinates by step v, so that both ends are known from its middle.
             x0[i], x1[i] = x[i] - 0.5 * step * v[i], x[i] + 0.5 * step * v[i]
 
     @inner

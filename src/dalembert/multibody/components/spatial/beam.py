@@ -288,6 +288,7 @@ class Beam(NodeChain, Body):
         """
         points = np.array(rule(self.degree, self.degree).places)
         known = strains(nodes, Places.at(self.degree, points), np.full(1, self.length / self.elements))
+        # Lagrange's polynomials of the points, by the inverse of Vandermonde's matrix.
         weights = np.linalg.solve(np.vander(points).T, np.vander(shares, len(points)).T).T
         return np.einsum("sp,fepk->fesk", weights, known - self._references)
 

@@ -10,4 +10,5 @@ STILL = 1e-10
 @inlined
 def along_change(missing, square):
     """Factor s of the change d of the arguments, for which s d . d is what is missing; ``square``: d . d."""
+    # Where nothing changes both are zero; a part of 1e-10 / d . d of the missing work stays missing.
     return missing * reciprocal(square + STILL)

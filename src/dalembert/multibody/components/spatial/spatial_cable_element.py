@@ -87,6 +87,7 @@ def residual(x, v, a, p, m, inputs, r):
     # Sums over points of the force against r1 - r2, r1' and r2'.
     zero = times(0.0, at(x, 0))
     first, second, fifth = zero, zero, zero
+    # Stretch at Lobatto's points; its force acts along the line.
     for g in range(3):
         s1, s2, s5 = A1[g] * across, A2[g], A5[g]
         f = _line(s1, s2, s5, x)
@@ -98,6 +99,7 @@ def residual(x, v, a, p, m, inputs, r):
         force = times(AW[g] * h * p.axial * strain, f)
         first = plus(first, times(s1, force))
         second, fifth = plus(second, times(s2, force)), plus(fifth, times(s5, force))
+    # Bending at Gauss' points; its moment acts on r' and on r''.
     for g in range(3):
         s1, s2, s5 = B1[g] * across, B2[g], B5[g]
         c1, c2, c5 = C1[g] * across * across, C2[g] * across, C5[g] * across
@@ -201,6 +203,7 @@ def mean(x, v, a, p, m, inputs, step, r):
     for g in range(3):
         s1, s2, s5 = A1[g] * across, A2[g], A5[g]
         f, f0, f1 = _line(s1, s2, s5, x), _line(s1, s2, s5, x0), _line(s1, s2, s5, x1)
+        # |f1| - |f0| = (f1.f1 - f0.f0) / (|f1| + |f0|): no difference of roots in the force.
         size0, size1 = root(dot(f0, f0)), root(dot(f1, f1))
         strain = 0.5 * (size0 + size1) - 1.0 - rests[g] + delay / step * (size1 - size0)
         force = times(2.0 * AW[g] * h * p.axial * strain * reciprocal(size0 + size1), f)

@@ -141,6 +141,7 @@ def mean(kind: Declaration, dtype: type) -> BlockKernel:
         index, r, own_r = integers2(block.index, block.count, width), view(call.r, call.last + 1), local_r()
         for i in range(width):
             own_r[i] = 0.0
+        # The midpoint rule solves the full system, so that these forces are not projected.
         function(x, v, a, p, m, inputs, call.step, own_r)
         for i in range(width):
             r[index[e, i]] += own_r[i]
@@ -194,6 +195,7 @@ def mean_power(kind: Declaration, dtype: type) -> BlockKernel:
     @inlined
     def step(x, v, a, p, m, inputs, call, block, e):
         totals = view(call.totals, 3)
+        # Energies of the middle of a step are not asked for, but the power that is lost in it.
         totals[2] += function(x, v, p, m, inputs, call.step)
 
     return _each(kind, "mean_power", dtype, step)

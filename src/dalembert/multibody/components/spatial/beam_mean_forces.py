@@ -45,13 +45,17 @@ class MeanForces(NamedTuple):
     power: Callable[..., Any]
 
 
-def mean_forces(degree: int, add_inertia: Callable[..., Any], inertia_energies: Callable[..., Any]) -> MeanForces:
-    """The mean forces of elements of a degree.
+class _Points(NamedTuple):
+    """Functions that add up over the points of an element: forces, forces on the line, and power of the damping."""
 
-    ``add_inertia`` and ``inertia_energies``: functions of their inertia and weight.
-    """
-    nodes, middle, points = degree + 1, degree // 2, rule(degree, degree)
-    width, entries, lines = SLOTS * nodes, 4 * nodes, 3 * degree
+    forces: Callable[..., Any]
+    lines: Callable[..., Any]
+    losses: Callable[..., Any]
+
+
+def _points(degree: int) -> _Points:
+    """The functions of the points of an element of a degree."""
+    middle, points = degree // 2, rule(degree, degree)
 
     @inlined
     def strained(x, quaternions, across, values, slopes):
@@ -128,10 +132,18 @@ def mean_forces(degree: int, add_inertia: Callable[..., Any], inertia_energies: 
 
         return forces_of, lines_of, loss_of
 
-    parts = [at_point(g) for g in range(degree)]
-    all_forces = summed([forces for forces, _, _ in parts])
-    all_lines = in_turn([lines for _, lines, _ in parts])
-    all_losses = summed([loss for _, _, loss in parts])
+    forces, lines, losses = zip(*(at_point(g) for g in range(degree)), strict=True)
+    return _Points(summed(list(forces)), in_turn(list(lines)), summed(list(losses)))
+
+
+def mean_forces(degree: int, add_inertia: Callable[..., Any], inertia_energies: Callable[..., Any]) -> MeanForces:
+    """The mean forces of elements of a degree.
+
+    ``add_inertia`` and ``inertia_energies``: functions of their inertia and weight.
+    """
+    nodes, middle = degree + 1, degree // 2
+    all_forces, all_lines, all_losses = _points(degree)
+    width, entries, lines = SLOTS * nodes, 4 * nodes, 3 * degree
 
     @inlined
     def fill_ends(x, v, step, x0, x1):

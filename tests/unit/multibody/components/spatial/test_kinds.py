@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from dalembert.multibody.components.spatial.kinds import no_residual
+from dalembert.multibody.components.spatial.line_force import ON_CABLE
 from dalembert.multibody.kernels.block_table import c_function
 from dalembert.multibody.kernels.constraints import forces_of, rates_of
 from dalembert.multibody.kernels.elementary import STEP
@@ -140,5 +141,5 @@ def test_tangents_by_duals_are_those_by_complex_steps(kind: Kind, reduces: bool)
         model.evaluate(call, TIME, TIME)
         c_function(kind.kernel("tangent", model.dtype).address)(call.address, block)
     np.testing.assert_allclose(answers[0], answers[1], rtol=0, atol=1e-13 * np.abs(answers[1]).max())
-    if kind.residual is not no_residual:
+    if kind.residual is not no_residual and kind is not ON_CABLE:  # whose force is dead
         assert np.abs(answers[1]).max() > 0.01

@@ -167,11 +167,10 @@ class Cable(NodeChain, Body):
 
     def motion_findings(self, times: np.ndarray, states: np.ndarray, rates: np.ndarray) -> tuple[Finding, ...]:
         nodes = states.reshape(len(states), -1, 2, 3)
-        chords = np.diff(nodes[:, :, 0], axis=1)
-        lines = [nodes[:, :-1, 1], nodes[:, 1:, 1], chords]  # of each element: both slopes and the chord
-        first, second, chord = (own / (np.linalg.norm(own, axis=-1, keepdims=True) + 1e-300) for own in lines)
-        pairs = (first, second), (first, chord), (second, chord)
-        cosines = np.min([np.sum(a * b, axis=-1).min(axis=1) for a, b in pairs], axis=0)
+        # Of each element: the directions of both slopes and of the chord.
+        vectors = np.stack([nodes[:, :-1, 1], nodes[:, 1:, 1], np.diff(nodes[:, :, 0], axis=1)])
+        directions = vectors / (np.linalg.norm(vectors, axis=-1, keepdims=True) + 1e-300)
+        cosines = np.einsum("atec,btec->abte", directions, directions).min(axis=(0, 1, 3))
         return turn_findings(f"cable {self.name!r}", self.name, self.elements, times, cosines, "")
 
     def outline(self, coordinates: np.ndarray, points: int) -> np.ndarray:

@@ -62,6 +62,6 @@ class SpatialRows(Rows, Protocol):
 
 def first_coordinate(lowering: SpatialRows, point: Point, owner: str) -> int:
     """The first coordinate of the body of a point."""
-    first, own = lowering.pair(point, None, owner).slots[0], point.body.marker(point.name).slots[0]
-    assert first is not None
-    return first - own
+    at_point, within_body = lowering.pair(point, None, owner).slots[0], point.body.marker(point.name).slots[0]
+    assert at_point is not None
+    return at_point - within_body

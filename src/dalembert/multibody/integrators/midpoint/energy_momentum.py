@@ -37,7 +37,8 @@ class EnergyMomentum(Variational):
     The step is that of :class:`Variational` with an additional small force c M v'. The number c makes the energy at the
     end of each step equal to the initial energy plus the work of loads and losses at the midpoints of the steps. v' are
     the velocities without the rigid motions that gravity and ground leave free. The force does no work on these, so
-    the momenta of free mechanisms, and of those that rotate about one point of the ground, are conserved to rounding.
+    the momenta of free mechanisms, and of those that rotate about one point of the ground, are conserved to rounding;
+    of mechanisms in space the linear momenta alone. Beams and cables in space take mean forces of both ends of a step.
     The constraints on positions, velocities and accelerations are satisfied to rounding.
 
     Parameters

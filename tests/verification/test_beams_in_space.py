@@ -233,6 +233,32 @@ def test_elbow_in_motion(record_evidence):
     )  # fmt: skip
 
 
+def test_gradient_by_an_unknown_history(record_evidence):
+    """The tip of a cantilever is pushed by a spline; the gradient by its coefficients, by the adjoint."""
+
+    def build(**coefficients):
+        system = SpatialSystem(gravity=(0.0, 0.0, 0.0))
+        section = Section.rectangle(0.02, 0.01, youngs_modulus=2e9, poisson_ratio=0.3, density=1000.0)
+        beam = system.add(Beam("b", section, 1.0, 2, 2, curvature=(0.4, 0.3, 0.0)))
+        system.add(FixedJoint("clamp", system.ground, beam.start))
+        push = mb.BSpline(np.array(list(coefficients.values())), 0.0, 0.2)
+        system.add(sp.Force("push", beam.end, z=push))
+        return system
+
+    names, times = ["b.end.x", "b.end.z", "b.end.rotation_x", "clamp.torque_2"], np.linspace(0.0, 0.2, 41)
+    box = {f"c{k}": (-5.0, 5.0) for k in range(20)}
+    model = mb.TimeResponse(build, box, names, times, mb.GeneralizedAlpha(1e-3))
+    chance = np.random.default_rng(4)
+    vector, cotangent = chance.normal(size=20), chance.normal(size=(41, 4))
+    exact = np.einsum("sc,scp->p", cotangent, model.jacobian(vector))
+    gradient = model.pullback(vector)[1](cotangent)
+    record_evidence(
+        "Gradient of a beam's motion by 20 coefficients of a load, by the adjoint: largest difference", 0.0,
+        np.abs(gradient - exact).max() / np.abs(exact).max(), tolerance=1e-9, topic=TOPIC,
+        kind="other method", source="direct sensitivities by dual numbers",
+    )  # fmt: skip
+
+
 @pytest.mark.slow
 def test_in_a_plane_it_is_the_planar_beam(record_evidence):
     """A pendulum of one material and section, by beams in space and in the plane, while it bends by a third."""

@@ -7,7 +7,7 @@ import pytest
 from inline_snapshot import snapshot
 
 import dalembert.multibody as mb
-import dalembert.multibody.spatial as sp
+from adjoint_differences import difference, points_alone
 from dalembert.errors import InputError
 from dalembert.forward import prefers_adjoint, pullback
 from dalembert.multibody.adjoint.checkpoints import Checkpoints
@@ -18,30 +18,11 @@ from refusals import refused
 from unknown_loads import BETWEEN, pushed, pushed_model
 
 
-def motion(model: mb.TimeResponse, **changed) -> mb.TimeResponse:
-    """The same model, read at points and components alone."""
-    names = [name for name in model.channel_names if not name.startswith("system.")]
-    given = {"channels": names, "times": model.times, "solver": model.solver} | changed
-    return mb.TimeResponse(model.builder, model.parameters, **given)
-
-
-def difference(model: mb.TimeResponse) -> float:
-    """Largest difference of the gradient of a random sum from the direct one, relative to the sizes of its terms."""
-    vector = model.parameters.start
-    response, jacobian = model.linearise(vector)
-    cotangent = np.random.default_rng(0).normal(size=response.shape) / (np.abs(response).max(axis=0) + 1.0)
-    own, pull = model.pullback(vector)
-    np.testing.assert_allclose(own, response, rtol=0, atol=1e-12 * np.abs(response).max())
-    terms = np.einsum("sc,scp->p", np.abs(cotangent), np.abs(jacobian))
-    error = pull(cotangent) - np.einsum("sc,scp->p", cotangent, jacobian)
-    return float(np.max(np.abs(error) / np.maximum(terms, 1e-300)))
-
-
 @pytest.mark.parametrize("kind", [kind for kind, (_, fields) in SCENES.items() if fields])
 def test_the_gradient_by_the_numbers_of_every_component(kind: type) -> None:
     # The rod of the distance joint amplifies rounding: at lengths 3 % around, the difference is 3e-11 to 7e-10.
     limit = 2e-9 if kind is mb.DistanceJoint else 1e-10
-    assert difference(motion(response(*SCENES[kind], SHORT if kind is mb.AncfBeam else SOLVER))) < limit
+    assert difference(points_alone(response(*SCENES[kind], SHORT if kind is mb.AncfBeam else SOLVER))) < limit
 
 
 @pytest.mark.parametrize(
@@ -49,7 +30,7 @@ def test_the_gradient_by_the_numbers_of_every_component(kind: type) -> None:
     [(slack, {"x": 0.3, "angle": -0.4}), (loop, {"crank": 0.4, "base": 1.1, "turn": 0.7, "rate": 2.0})],
 )
 def test_the_gradient_by_what_the_initial_state_follows_from(build: Callable, fields: dict) -> None:
-    assert difference(motion(response(build, fields, SHORT), times=BETWEEN)) < 1e-10
+    assert difference(points_alone(response(build, fields, SHORT), times=BETWEEN)) < 1e-10
 
 
 @pytest.mark.parametrize(
@@ -64,7 +45,7 @@ def test_the_gradient_by_what_the_initial_state_follows_from(build: Callable, fi
 )
 @pytest.mark.parametrize("kind", [mb.AncfCable, mb.Step])
 def test_every_setting_of_the_solver(kind: type, solver: mb.GeneralizedAlpha) -> None:
-    assert difference(motion(response(*SCENES[kind]), times=BETWEEN, solver=solver)) < 1e-10
+    assert difference(points_alone(response(*SCENES[kind]), times=BETWEEN, solver=solver)) < 1e-10
 
 
 @pytest.mark.parametrize("kind", ["spline", "linear", "cubic", "held"])
@@ -95,7 +76,7 @@ def test_checkpoints_take_the_place_of_the_states_of_all_steps(
 ) -> None:
     model = pushed_model("held", 20, solver=solver)
     if kind == "step":
-        model = motion(response(*SCENES[mb.Step]), times=BETWEEN, solver=solver)
+        model = points_alone(response(*SCENES[mb.Step]), times=BETWEEN, solver=solver)
     vector, cotangent = model.parameters.start, np.ones((4, len(model.channels)))
     response_, pull = model.pullback(vector)
     monkeypatch.setattr("dalembert.multibody.adjoint.recorded_motion.ROOM", 1000)
@@ -118,7 +99,7 @@ def test_checkpoints_are_as_many_as_the_root_of_the_steps(monkeypatch: pytest.Mo
 
 
 def test_halved_steps_have_an_adjoint() -> None:
-    model = motion(response(*SCENES[mb.AncfBeam], mb.GeneralizedAlpha(0.02, newton_tolerance=1e-18)))
+    model = points_alone(response(*SCENES[mb.AncfBeam], mb.GeneralizedAlpha(0.02, newton_tolerance=1e-18)))
     assert difference(model) < 1e-10
     lowered = model.lowered_at(model.parameters.start, 0.0, closed=True)
     assert isinstance(model.solver, mb.GeneralizedAlpha)
@@ -127,7 +108,7 @@ def test_halved_steps_have_an_adjoint() -> None:
 
 
 def test_a_gradient_may_be_asked_for_several_times() -> None:
-    model = motion(response(*SCENES[mb.Spring]))
+    model = points_alone(response(*SCENES[mb.Spring]))
     response_, pull = model.pullback(model.parameters.start)
     np.testing.assert_array_equal(pull(response_), pull(response_))
     np.testing.assert_allclose(pull(3.0 * response_), 3.0 * pull(response_), rtol=1e-12)
@@ -170,7 +151,9 @@ def test_what_has_no_adjoint_is_refused() -> None:
             "GeneralizedAlpha with spectral_radius = 1 projects velocities after each step, which has no adjoint. Take a radius below 1, or take derivative='direct'"
         ),
     ):
-        projected = motion(response(pinned, {"viscous": 0.4}), solver=mb.GeneralizedAlpha(1e-3, spectral_radius=1.0))
+        projected = points_alone(
+            response(pinned, {"viscous": 0.4}), solver=mb.GeneralizedAlpha(1e-3, spectral_radius=1.0)
+        )
         projected.pullback(np.array([0.4]))
     by_differences = mb.TimeResponse(
         model.builder, model.parameters, ["arm.end.x"], BETWEEN, derivative="central-differences"
@@ -197,20 +180,6 @@ def test_functions_that_hold_parameters_are_refused() -> None:
         snapshot(
             "the adjoint has no derivative by parameters that a UserForce or a Custom function of time holds. Use a BSpline, a Table or another function of time, or take derivative='direct'"
         ),
-    ):
-        model.pullback(np.array([1.5]))
-
-
-def test_mechanisms_in_space_are_refused() -> None:
-    def build(mass: complex) -> sp.SpatialSystem:
-        system = sp.SpatialSystem()
-        system.add(sp.RigidBody("top", sp.Inertia.box(mass, (0.1, 0.2, 0.5)), angular_velocity=(0.1, 0.2, 3.0)))
-        return system
-
-    model = mb.TimeResponse(build, {"mass": (1.0, 2.0)}, ["top.centre.x"], BETWEEN)
-    with refused(
-        InputError,
-        snapshot("mechanisms in space have no adjoint yet. Use a planar mechanism, or take derivative='direct'"),
     ):
         model.pullback(np.array([1.5]))
 

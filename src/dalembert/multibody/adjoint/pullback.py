@@ -40,8 +40,12 @@ def refuse(lowered: Lowered, solver: Integrator, observer: Observer) -> Generali
     """Return the integrator if a motion by it has an adjoint."""
     if not isinstance(solver, GeneralizedAlpha):
         raise InputError(f"{type(solver).__name__} has no adjoint. Use GeneralizedAlpha, or {DIRECT}")
-    if lowered.structure.reduction.nodes:
-        raise InputError(f"mechanisms in space have no adjoint yet. Use a planar mechanism, or {DIRECT}")
+    for kind in lowered.structure.reduction.nodes:
+        if kind.chart is None or kind.chart.balance is None:
+            raise InputError(
+                f"the chart of kind {kind.name!r} has no function 'balance', which the adjoint needs. "
+                f"Add it, or {DIRECT}"
+            )
     if solver.spectral_radius == 1.0 and lowered.structure.size > lowered.structure.n:
         raise InputError(
             "GeneralizedAlpha with spectral_radius = 1 projects velocities after each step, which has no adjoint. "
@@ -60,8 +64,9 @@ def adjoint_kernels(lowered: Lowered, observer: Observer) -> list[Compiled]:
     """Kernels that only the adjoint needs."""
     layout = lowered.structure.full.fresh[1]
     rates = [kind.kernel("rates", complex) for kind in lowered.data if "rates" in kind.roles]
+    balances = [kind.kernel("balance", float) for kind in lowered.structure.reduction.nodes]
     return [
-        sweep, pull_once, fixed_masses, accelerate, transposed(layout), *kernels_of(lowered.data), *rates,
+        sweep, pull_once, fixed_masses, accelerate, transposed(layout), *kernels_of(lowered.data), *rates, *balances,
         *observer.kernels(lowered, True),
     ]  # fmt: skip
 

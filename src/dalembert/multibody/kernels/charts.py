@@ -23,6 +23,8 @@ class Chart(NamedTuple):
     ``restore(x, p, m, dx)`` fills ``dx`` with what moves coordinates near the internal constraints onto them; p and m
     are the columns of the kind that has the chart.
     ``project(x, r, s)`` fills ``s`` (increments,) with N(x)^T r, where that is faster than by ``spread``.
+    ``balance(x, r, dx)`` fills the first entries of ``dx`` with the multipliers of the internal constraints, whose
+    forces balance forces r on the coordinates as far as they can. Only the adjoint needs it.
     """
 
     size: int
@@ -31,6 +33,7 @@ class Chart(NamedTuple):
     change: Function | None = None
     restore: Function | None = None
     project: Function | None = None
+    balance: Function | None = None
 
     @property
     def is_flat(self) -> bool:

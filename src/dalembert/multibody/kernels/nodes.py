@@ -11,7 +11,7 @@ from dalembert.kernels.arithmetic import VIEWS
 from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import BlockKernel, inlined
 from dalembert.kernels.lanes import Lanes
-from dalembert.kernels.views import call, integers, integers2, local, records
+from dalembert.kernels.views import call, integers, integers2, local, reals, records
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import made, number_rows
 from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
@@ -62,7 +62,33 @@ def _kernel(role: str, kind: Declaration, dtype: type) -> BlockKernel:
     return made(loop, kind, role, dtype)
 
 
-MAKERS = {role: partial(_kernel, role) for role in ("spread", "change", "restore")}
+def _balance(kind: Declaration, dtype: type) -> BlockKernel:
+    """Add to the multipliers of internal constraints what balances the residual ``r`` on the nodes' coordinates.
+
+    The reduced system knows no such multipliers. They enter derivatives of the full one.
+    """
+    chart: Any = kind.chart
+    balance = chart.balance
+    width, coordinates = kind.width, kind.coordinates
+    local_x, local_r, local_dx = (local(dtype, coordinates) for _ in range(3))
+
+    def loop(call_address, block_address):
+        call, block = call_at(call_address), block_at(block_address)
+        count, size = block.count, call.last + 1
+        index = integers2(block.index, count, width)
+        x, r = reals(call.x, size), reals(call.r, size)
+        own_x, own_r, own_dx = local_x(), local_r(), local_dx()
+        for e in range(count):
+            for i in range(coordinates):
+                own_x[i], own_r[i] = x[index[e, i]], r[index[e, i]]
+            balance(own_x, own_r, own_dx)
+            for j in range(width - coordinates):
+                x[index[e, coordinates + j]] += own_dx[j]
+
+    return made(loop, kind, "balance", dtype)
+
+
+MAKERS = {role: partial(_kernel, role) for role in ("spread", "change", "restore")} | {"balance": _balance}
 
 
 def _of_all(role: Callable[..., int], begin: Callable[..., None], symbol: str) -> BlockKernel:

@@ -53,12 +53,8 @@ def _element(degree: int, h: Any, curvatures: np.ndarray) -> np.ndarray:
     for _ in range(_MOST_ITERATIONS):
         # Newton's method; the matrix of the real part serves the derivatives in imaginary parts, too.
         real = np.real(nodes).astype(complex)
-        changes = np.eye(6 * degree).reshape(-1, degree, 6)
-        base = np.real(np.array(h))
-        columns = [
-            np.imag(strains(_moved(real, 1j * STEP * c)[None], places, np.full(1, base))[0]).ravel() for c in changes
-        ]
-        step = np.linalg.solve(np.array(columns).T / STEP, missed(nodes))
+        columns = np.imag(strains(_perturbed(real), places, np.real(size))).reshape(6 * degree, -1)
+        step = np.linalg.solve(columns.T / STEP, missed(nodes))
         nodes = _moved(nodes, -step.reshape(degree, 6))
         norm = np.abs(np.real(step)).max() + np.abs(np.imag(step)).max() / STEP
         if norm <= _ROUNDING * np.abs(np.real(np.array(h))) or norm >= before:
@@ -71,6 +67,19 @@ def _moved(nodes: np.ndarray, changes: np.ndarray) -> np.ndarray:
     """Nodes (nodes, 4, 3) after displacements and rotations (nodes - 1, 6) of all but the first."""
     moved = [np.vstack([node[0] + c[:3], turned(node[1:], c[3:])]) for node, c in zip(nodes[1:], changes, strict=True)]
     return np.array([nodes[0], *moved])
+
+
+def _perturbed(nodes: np.ndarray) -> np.ndarray:
+    """Nodes with an imaginary step of each displacement and rotation of all but the first, (steps, nodes, 4, 3)."""
+    count = len(nodes) - 1
+    moved = np.tile(nodes, (6 * count, 1, 1, 1))
+    for step, (node, axis) in enumerate(np.ndindex(count, 6)):
+        unit, directors = np.eye(3)[axis % 3], nodes[node + 1, 1:]
+        if axis < 3:
+            moved[step, node + 1, 0] += 1j * STEP * unit
+        else:
+            moved[step, node + 1, 1:] += 1j * STEP * np.cross(unit, directors)
+    return moved
 
 
 def _arc(degree: int, h: Any, curvature: np.ndarray) -> np.ndarray:

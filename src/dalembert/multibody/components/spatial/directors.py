@@ -55,6 +55,18 @@ def _orthonormal(x, p, m, dx):
 
 
 @inlined
+def _balanced(x, r, dx):
+    """Multipliers whose forces on orthonormal directors, as in `_forces`, take off the symmetric part of d_i . r_j."""
+    row = 0
+    for i in range(0, 9, 3):
+        dx[row] = -dot(at(x, i), at(r, i))
+        row += 1
+        for j in range(i + 3, 9, 3):
+            dx[row] = -0.5 * (dot(at(x, i), at(r, j)) + dot(at(x, j), at(r, i)))
+            row += 1
+
+
+@inlined
 def _constraint(x, p, m, inputs, g):
     """(d_i . d_i - 1) / 2 and d_i . d_j, i < j."""
     row = 0
@@ -78,7 +90,7 @@ def _forces(x, p, m, r):
             row += 1
 
 
-CHART = Chart(9, 3, _rotated, _cayley, _orthonormal, _projected)
+CHART = Chart(9, 3, _rotated, _cayley, _orthonormal, _projected, _balanced)
 DIRECTORS = Kind(
     "directors",
     coordinates=9,

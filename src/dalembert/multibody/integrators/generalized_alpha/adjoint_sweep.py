@@ -12,7 +12,7 @@ from dalembert.kernels.kernel import inlined, kernel
 from dalembert.kernels.views import address_of, call
 from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
-from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.assembly import residual, set_signals
 from dalembert.multibody.kernels.linear import Factors, Layout, factorise, storage
 from dalembert.multibody.kernels.records import BLOCK_SIZE, block_at, call_at, model_at
 from dalembert.multibody.kernels.states import MotionState, clear, coefficients
@@ -71,11 +71,23 @@ class ResidualDerivatives(NamedTuple):
     values: Reals
 
 
+class Balance(NamedTuple):
+    """What finds the multipliers of internal constraints: a model in real numbers, and a call. ``nodes`` (kinds, 2) are
+    the kernel of each kind of nodes, and its block. ``r`` is the residual.
+    """
+
+    model: Address
+    work: Address
+    nodes: Integers2
+    r: Reals
+
+
 class SweepWorkspace(NamedTuple):
     """Work of the sweep: a call for gradients by numbers, which are complex steps, and one for tangents, the matrix
     with its transposed solution, parts of it, vectors.
     ``masses`` are those that do not change, in the places of the matrix. ``by_x``, ``by_v`` and ``by_a`` are the parts
     along coordinates, velocities (of blocks that depend on them), and accelerations (of blocks whose masses vary).
+    ``balance`` finds the multipliers of internal constraints.
     """
 
     work: Address
@@ -91,11 +103,12 @@ class SweepWorkspace(NamedTuple):
     of_q: Reals
     of_v: Reals
     past: MotionState
+    balance: Balance
 
 
 def sweep_workspace(
     layout: Layout, width: int, work: int, tangent_work: int,
-    parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives],
+    parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives], balance: Balance,
 ) -> SweepWorkspace:  # fmt: skip
     """Workspace for a sweep over vectors of ``width``; its masses are zero, and filled before the sweep. ``work``,
     ``tangent_work``: addresses of calls; ``parts``: derivatives of the residual by q, v and a.
@@ -104,7 +117,7 @@ def sweep_workspace(
     factors = storage(layout)
     return SweepWorkspace(
         work, tangent_work, factors, transposed(layout).address, np.zeros(len(factors.matrix)), *parts, right, mu,
-        of_q, of_v, MotionState(*past),
+        of_q, of_v, MotionState(*past), balance,
     )  # fmt: skip
 
 
@@ -194,6 +207,18 @@ def _take_samples(n, h, k, given, left, bar, past):
 
 
 @inlined
+def _balance(n, t, within, x, v, a, own):
+    """Give the multipliers of internal constraints their values, which a step of the reduced system leaves open."""
+    # The step solves N^T r = 0 beside the internal constraints G. That is r + G^T l = 0 with multipliers l: the step of
+    # the full system, whose derivatives hold G^T l differentiated by q.
+    if len(own.nodes) > 0:
+        set_signals(own.model, t, within, own.work)
+        residual(own.model, n, x, v, a, own.work, 1.0, own.r)
+        for k in range(len(own.nodes)):
+            call(own.nodes[k, 0], own.work, own.nodes[k, 1])
+
+
+@inlined
 def _multiply_transposed(part, mu, answer):
     """Product of a transposed part with mu."""
     clear(answer)
@@ -248,6 +273,7 @@ def sweep(
         clear(past.v)
         clear(past.a)
         left = _take_samples(n, c.step, first + k, given, left, bar, past)
+        _balance(n, steps.ends[k], steps.sides[k], x, v, a, scratch.balance)
         set_signals(tangent_model, steps.ends[k], steps.sides[k], scratch.tangent_work)
         _fill_matrix(tangent_model, n, c, x, v, a, scratch)
         if not factorise(layout, scratch.factors):

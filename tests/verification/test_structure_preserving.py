@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import dalembert as da
+import dalembert.multibody.spatial as sp
 from flexible_pendulum import pendulum
 from momenta import momenta
 from rigid_mechanisms import andrews, read, two_link_arm
@@ -208,6 +209,30 @@ def test_the_momentum_across_gravity_stays_in_free_fall(record_evidence) -> None
         source="conservation law",
         noisy=True,
     )
+
+
+@pytest.mark.slow
+def test_energy_and_vertical_momentum_of_a_heavy_top(record_evidence) -> None:
+    """A top on a ball joint under gravity, beside the vertical through which nothing else is held."""
+    system = sp.SpatialSystem()
+    inertia = sp.Inertia.box(15.0, (0.4, 0.4, 0.2)).moved((0.0, 0.0, 1.0))
+    tilt = sp.Orientation.by_angles("x", [0.3])
+    spin = tuple(40.0 * tilt.matrix[:, 2])
+    top = system.add(sp.RigidBody("top", inertia, (0.2, 0.1, 0.0), orientation=tilt, angular_velocity=spin))
+    system.add(sp.SphericalJoint("tip", system.ground.point((0.2, 0.1, 0.0)), top.point("origin")))
+    motion = da.simulate(system, 100.0, solver=da.EnergyMomentum(step=2e-3))
+    total, kinetic = motion.energies["total"], motion.energies["kinetic"].max()
+    all_momenta = momenta(motion)
+    vertical = all_momenta[:, 5] - 0.2 * all_momenta[:, 1] + 0.1 * all_momenta[:, 0]
+    common = {"topic": TOPIC, "kind": "conservation law", "source": "conservation law", "noisy": True}
+    record_evidence(
+        "EnergyMomentum: energy of a heavy top over 50 000 steps, by the largest kinetic energy",
+        np.zeros(len(total)), (total - total[0]) / kinetic, tolerance=1e-12, **common,
+    )  # fmt: skip
+    record_evidence(
+        "EnergyMomentum: vertical angular momentum of a heavy top over 50 000 steps",
+        np.zeros(len(total)), vertical / vertical[0] - 1.0, tolerance=1e-11, **common,
+    )  # fmt: skip
 
 
 def test_work_of_loads_dampers_and_friction_balances_the_energy(record_evidence, arm) -> None:

@@ -17,7 +17,7 @@ from dalembert.multibody.kernels.records import BLOCK, CALL, MODEL
 from dalembert.multibody.kernels.reduction import Reduction
 from dalembert.multibody.kernels.signal_values import EVALUATORS
 
-MEANS = {"residual": "mean", "energy": "mean_power"}
+MEANS = {"residual": "mean", "energy": "mean_power", "tangent": "mean_tangent"}
 """Roles of the middle of a step, by those that they take the place of."""
 
 
@@ -115,13 +115,16 @@ class BlockModel:
                     block[role] = kernel.address
         return self
 
-    def averaged(self) -> "BlockModel":
-        """Load the forces of the middle of a step by which its energy is kept, and their power; hand the model back."""
+    def averaged(self, means: bool) -> "BlockModel":
+        """Load what a step is computed by that keeps the energy: with ``means`` mean forces, where kinds have them, and
+        constraint forces of the middle of the step. Hand the model back.
+        """
         head = self._words[0]
         if head["middle"][0] == 0:
             middle = self
-            if any(kind.has("mean") for kind in self.blocks.index):
-                middle = replace(self, averages=True, roles=tuple(MEANS))
+            if means:
+                roles = (*self.roles, *["energy"] * ("residual" in self.roles))
+                middle = replace(self, averages=True, roles=tuple(role for role in MEANS if role in roles))
                 self._kernels.append(middle)
             head["middle"] = middle.address
         return self

@@ -211,7 +211,7 @@ class Declaration:
         acts = self.residual is not None or self.constraint is not None
         roles = {
             **dict.fromkeys(("residual", "tangent", "pullback"), acts),
-            "mean": self.mean is not None,
+            **dict.fromkeys(("mean", "mean_tangent"), self.mean is not None),
             "mean_power": self.mean_power is not None,
             "rates": self.constraint is not None,
             "energy": self.energy is not None or self.residual is not None,

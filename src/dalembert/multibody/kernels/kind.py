@@ -10,9 +10,9 @@ from dalembert.multibody.kernels.debugging import PLAIN, PlainKernel
 from dalembert.multibody.kernels.declaration import Declaration
 from dalembert.multibody.kernels.loops import BlockKernel
 
-_MAKERS = {**loops.MAKERS, **nodes.MAKERS, "tangent": tangents.tangent, "pullback": pullbacks.pullback}
-_ONE_ARITHMETIC = {"tangent", "pullback"}  #: roles of which a kind has one kernel
-_WHEN_NEEDED = {"mean", "mean_power"}  #: roles whose kernels are not compiled ahead
+_MAKERS = {**loops.MAKERS, **nodes.MAKERS, **tangents.MAKERS, "pullback": pullbacks.pullback}
+_ONE_ARITHMETIC = {"tangent", "mean_tangent", "pullback"}  #: roles of which a kind has one kernel
+_WHEN_NEEDED = {"mean", "mean_tangent", "mean_power"}  #: roles whose kernels are not compiled ahead
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,7 @@
 """Tangents: columns of a local matrix are slopes of the residual, eight at once by duals, or one by a complex step."""
 
+from typing import Any
+
 from dalembert.kernels.arithmetic import VIEWS
 from dalembert.kernels.duals import DIRECTIONS, ENTRIES, Dual
 from dalembert.kernels.kernel import BlockKernel, inlined
@@ -11,7 +13,23 @@ from dalembert.multibody.kernels.loops import made, system_of
 from dalembert.multibody.kernels.records import Inputs, block_at, call_at
 
 
-def tangent(kind: Declaration, dtype: type) -> BlockKernel:
+def mean_tangent(kind: Declaration, dtype: type) -> BlockKernel:
+    """As `tangent`, of the residual with the mean forces of a step."""
+    return tangent(kind, dtype, "mean_tangent")
+
+
+def _residual(kind: Declaration) -> Any:
+    """The residual, as a function of the step too, which it does not depend on."""
+    function = kind.residual_function
+
+    @inlined
+    def residual(x, v, a, p, m, inputs, step, r):
+        function(x, v, a, p, m, inputs, r)
+
+    return residual
+
+
+def tangent(kind: Declaration, dtype: type, role: str = "tangent") -> BlockKernel:
     """Add by_x dr/dq + by_v dr/dv + by_a dr/da of a kind, and dr/dlambda; in the reduced system by the increments.
 
     A model in real numbers takes dual ones for it; one in complex numbers, as functions of users need it, takes complex
@@ -21,7 +39,8 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
     dual = dtype is float
     numeric, entries, at_once, step = (Dual, ENTRIES, DIRECTIONS, 1.0) if dual else (complex, 2, 1, STEP)
     view2 = VIEWS[dtype][1]
-    function, width, coordinates, increments = kind.residual_function, kind.width, kind.coordinates, kind.increments
+    function: Any = _residual(kind) if role == "tangent" else kind.mean
+    width, coordinates, increments = kind.width, kind.coordinates, kind.increments
     system, spread = system_of(kind), spreading(kind.parts)
     row_count, project = system.count, system.project
     numbers, whole = records(kind.number_record(dtype)), records(kind.integer_record)
@@ -74,7 +93,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
                     own_x[i], own_v[i], own_a[i], own_r[i] = place[i], v[index[e, i]], a[index[e, i]], 0.0
                 for j in range(first, last):
                     seed(narrow, j, 1 + j - first, call, place, d, dx, sx, sv, sa)
-                function(own_x, own_v, own_a, p[e], m[e], inputs, own_r)
+                function(own_x, own_v, own_a, p[e], m[e], inputs, call.step, own_r)
                 # N^T r in the same arithmetic, so that the change of N with the state is in its slopes.
                 forces = project(narrow, own_x, own_r, own_s)
                 slopes = reals2(address_of(forces), narrow, entries)
@@ -89,4 +108,7 @@ def tangent(kind: Declaration, dtype: type) -> BlockKernel:
                             factor = call.motion if row < call.increments else call.constraint
                             matrix[slots[e, i * narrow + j]] += slopes[i, 1 + j - first] / step * factor
 
-    return made(loop, kind, "tangent", dtype)
+    return made(loop, kind, role, dtype)
+
+
+MAKERS = {"tangent": tangent, "mean_tangent": mean_tangent}

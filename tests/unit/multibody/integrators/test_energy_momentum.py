@@ -9,6 +9,7 @@ from dalembert.errors import InputError
 from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions
 from dalembert.multibody.start.assemble import assembled
 from mechanisms import cable, plate
+from momenta import momenta
 from slopes import errors
 from support import says
 
@@ -76,7 +77,34 @@ def scene(gravity: tuple[float, float], *holds: str) -> mb.System:
     ],
 )
 def test_free_rigid_motions(gravity: tuple[float, float], holds: tuple[str, ...], spins: list[float]) -> None:
-    assert rigid_motions(assembled(scene(gravity, *holds)), ()).spin.tolist() == spins
+    assert rigid_motions(assembled(scene(gravity, *holds)), ()).sign.max(axis=1).tolist() == spins
+
+
+@pytest.mark.parametrize(
+    ("gravity", "place", "axes"),
+    [
+        ((0.0, 0.0, 0.0), None, ["x", "y", "z", "xx", "yy", "zz"]),
+        ((0.0, 0.0, -9.81), None, ["x", "y", "zz"]),
+        ((1.0, 0.0, -9.81), None, ["y"]),
+        ((0.0, 0.0, 0.0), (0.2, 0.1, 0.0), ["xx", "yy", "zz"]),
+        ((0.0, 0.0, -9.81), (0.2, 0.1, 0.0), ["zz"]),
+    ],
+)
+def test_free_rigid_motions_in_space(gravity, place, axes) -> None:
+    system = sp.SpatialSystem(gravity=gravity)
+    body = system.add(sp.RigidBody("body", sp.Inertia.box(2.0, (0.1, 0.2, 0.3)), position=place or (0.0, 0.0, 0.0)))
+    if place is not None:
+        system.add(sp.SphericalJoint("ball", system.ground.point(place), body.point("origin")))
+    lowered = assembled(system)
+    rigid = rigid_motions(lowered, ())
+    found = []
+    for partner, sign, shift in zip(rigid.partner, rigid.sign, rigid.shift, strict=True):
+        velocity = (sign * lowered.x[:-1][partner[: len(sign)]] if np.any(sign) else 0.0 * sign) + shift
+        turn = np.cross(np.eye(3), velocity[3:12].reshape(3, 3)).sum(axis=0) / 2  # of d_i x d_i'
+        found.append("xyz"[np.argmax(np.abs(turn))] * 2 if np.any(turn) else "xyz"[np.argmax(np.abs(velocity[:3]))])
+        if place is not None:
+            np.testing.assert_allclose(velocity[:3], 0.0, atol=1e-15)
+    assert found == axes
 
 
 def test_a_mass_that_turns_about_a_point_has_no_other_motion() -> None:
@@ -86,6 +114,22 @@ def test_a_mass_that_turns_about_a_point_has_no_other_motion() -> None:
     system.add(mb.DistanceJoint("rod", system.ground.point(0.0, 0.0), mass.centre))
     total = mb.simulate(system, 2.0, mb.EnergyMomentum(step=1e-2)).energies["total"]
     np.testing.assert_allclose(total, 9.0, rtol=1e-13)
+
+
+@pytest.mark.parametrize(("side", "damping"), [(1e-2, 0.0), (1e-3, 0.0), (1e-2, 1e-2)])
+def test_slender_and_damped_beams_need_no_shorter_steps(side: float, damping: float) -> None:
+    section = sp.Section.rectangle(side, side, youngs_modulus=2e11, poisson_ratio=0.3, density=7800.0)
+    system = sp.SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    system.add(sp.Beam("b", section, 1.0, 4, damping=damping, angular_velocity=(0.3, -0.2, 5.0)))
+    motion = mb.simulate(system, 0.1, mb.EnergyMomentum(step=1e-3))
+    assert len(motion.newton_iterations) == 100
+    conserved = momenta(motion)
+    np.testing.assert_allclose(conserved, np.tile(conserved[0], (101, 1)), atol=1e-13 * np.abs(conserved).max())
+    total = motion.energies["total"]
+    if damping:
+        assert np.all(np.diff(total) < 1e-12 * total[0])
+    else:
+        np.testing.assert_allclose(total, total[0], rtol=1e-13)
 
 
 def test_the_energy_in_space_is_kept_with_few_steps() -> None:

@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.midpoint.energy_balance import (
 )
 from dalembert.multibody.integrators.midpoint.lanes_balance import balance_lanes
 from dalembert.multibody.integrators.midpoint.lanes_loop import run_in_lanes
-from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions
+from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions, takes_means
 from dalembert.multibody.integrators.midpoint.variational import Variational
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.kernels.histories import energy_history
@@ -37,9 +37,12 @@ class EnergyMomentum(Variational):
     The step is that of :class:`Variational` with an additional small force c M v'. The number c makes the energy at the
     end of each step equal to the initial energy plus the work of loads and losses at the midpoints of the steps. v' are
     the velocities without the rigid motions that gravity and ground leave free. The force does no work on these, so
-    the momenta of free mechanisms, and of those that rotate about one point of the ground, are conserved to rounding;
-    of mechanisms in space the linear momenta alone. Beams and cables in space take mean forces of both ends of a step.
-    The constraints on positions, velocities and accelerations are satisfied to rounding.
+    the momenta of free mechanisms, and of those that rotate about one point of the ground, are conserved to rounding.
+
+    In space the step has the constraint forces of its middle, and beams and cables have mean forces of both ends. Such
+    forces do no work of their own, so c is rounding for most mechanisms. Velocities then satisfy the constraints in the
+    middle of each step, and at its ends to the order h^2. All other constraints are satisfied to rounding. Mechanisms
+    with armature inertias in space take the step of :class:`Variational`.
 
     Parameters
     ----------
@@ -67,11 +70,17 @@ class EnergyMomentum(Variational):
         own = [*super().kernels(structure, derivatives), converge, energy_history, *[converge_along] * derivatives]
         arithmetics = (float, complex) if derivatives else (float,)
         roles = [(kind, role) for kind in structure.index for role in _ROLES if kind.has(role)]
+        own += [kind.kernel("mean_tangent", float) for kind in structure.index if kind.has("mean")]
         return [*own, *(kind.kernel(role, dtype) for dtype in arithmetics for kind, role in roles)]
 
     def lane_kernels(self, sample: Lowered) -> list[Compiled]:
         """Those of `Variational`, of the balance, and of the components' energies."""
         return [*super().lane_kernels(sample), balance_lanes, *lane_kernels(sample.data, *_ROLES)]
+
+    def _damped(self, lowered: Lowered) -> bool:
+        """Whether the forces of a step depend on its velocities: mean forces do, through both ends."""
+        means = takes_means(lowered.structure) and any(kind.has("mean") for kind in lowered.data)
+        return lowered.dissipates or means
 
     def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
         """States of a group, and which samples have to run alone: all, if they do not share their rigid motions."""
@@ -80,15 +89,17 @@ class EnergyMomentum(Variational):
             within = 0.5 * (part.problem.edges[number, 0] + part.problem.edges[number, 1])
             energy, _, balance = self._balance(lowered, (), row(part.states, number), part.dstates, within)
             balances.append((energy, balance.rigid))
-        if any(not np.array_equal(rigid.spin, balances[0][1].spin) for _, rigid in balances):
+        if any(not np.array_equal(rigid.sign, balances[0][1].sign) for _, rigid in balances):
             return resting(len(balances), *part.shape), np.ones(len(balances), dtype=bool)
-        return run_in_lanes(part, float(self.step), float(self.newton_tolerance), balances)
+        return run_in_lanes(part, float(self.step), float(self.newton_tolerance), self._damped, balances)
 
     def _balance(
         self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and the force that keeps it."""
+        means = takes_means(lowered.structure)
         for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
-            model.need("energy").averaged()
+            model.need("energy").averaged(means)
+        lowered.tangents.averaged(means)
         energies = first_energies(lowered, perturbed, start, dstarts, within)
         return *energies, balance_workspace(len(start.x), rigid_motions(lowered, perturbed))

@@ -1,6 +1,6 @@
 """Runs of the constrained midpoint rule for eight samples side by side, and which of them have to run alone."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,8 +27,9 @@ from dalembert.multibody.integrators.midpoint.lanes_step import (
     lane_rows,
     lanes_step,
 )
-from dalembert.multibody.integrators.midpoint.midpoint_loop import AGED
-from dalembert.multibody.integrators.midpoint.midpoint_step import begin
+from dalembert.multibody.integrators.midpoint.midpoint_loop import AGED, WARY
+from dalembert.multibody.integrators.midpoint.midpoint_step import StepRows, begin, begin_by_means, open_means
+from dalembert.multibody.integrators.midpoint.symmetries import takes_means
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
 from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_ends, weigh_ends
@@ -51,17 +52,20 @@ from dalembert.multibody.integrators.shared.matrices import (
     scratch,
     weigh_masses,
 )
-from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem
+from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, IntegrationProblem
 from dalembert.multibody.integrators.shared.settling_lanes import FAILED, settle_lanes
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.elementary import where
 from dalembert.multibody.kernels.linear import Factors
-from dalembert.multibody.kernels.records import call_at
+from dalembert.multibody.kernels.records import call_at, model_at
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, resting, row, rows
 from dalembert.multibody.model.lane_models import lane_model
+from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.turns import count_turns
 
+MIDDLE, MIDDLE_VELOCITY, ACCELERATIONS = (StepRows._fields.index(name) for name in ("xm", "vm", "a"))
+"""Rows of a step."""
 Balanced = tuple[float, FreeRigidMotions]
 """Energy of a sample at the start, in J, and the rigid motions that are free."""
 
@@ -69,7 +73,8 @@ Balanced = tuple[float, FreeRigidMotions]
 class LaneMatrices(NamedTuple):
     """Mass, damping and stiffness of each lane (8, entries), for which step it is factorised (8,), and the work of one
     lane: a list of the entries with masses, and two factorised systems. ``damped`` (8,): whether forces may damp;
-    ``is_stale``, ``is_fresh`` (8,): whether a lane needs new matrices, and whether they are of this place.
+    ``is_stale``, ``is_fresh`` (8,): whether a lane needs new matrices, and whether they are of this place; ``wary``
+    (8,): steps that begin with new ones.
     """
 
     mass: Reals2
@@ -83,6 +88,7 @@ class LaneMatrices(NamedTuple):
     damped: Integers
     is_stale: Integers
     is_fresh: Integers
+    wary: Integers
 
 
 class LanesRun(NamedTuple):
@@ -109,11 +115,12 @@ class LanesRun(NamedTuple):
 
 
 def run_in_lanes(
-    batch: Batch, step: float, tolerance: float, balances: Sequence[Balanced] = ()
+    batch: Batch, step: float, tolerance: float, damped: Callable[[Lowered], bool], balances: Sequence[Balanced] = ()
 ) -> tuple[MotionState, np.ndarray]:
     """Run up to eight samples; return their states (samples, times, N + 1), and which of them have to run alone.
 
-    ``balances``: energy of each sample at the start and its rigid motions; empty if the energy is not balanced.
+    ``damped``: whether forces of a sample depend on velocities. ``balances``: energy of each sample at the start and
+    its rigid motions; empty if the energy is not balanced.
     """
     problem, samples = batch.problem, batch.samples
     filled = [*range(len(samples)), *[0] * (WIDTH - len(samples))]
@@ -121,7 +128,7 @@ def run_in_lanes(
     roles = ("residual", "rates", "energy") if balances else ("residual", "rates")
     together = lane_model(samples, *roles)
     if balances:
-        together.averaged()
+        together.averaged(takes_means(samples[0].structure))
     energies = [balances[number][0] for number in filled] if balances else []
     motions = [balances[number][1] for number in filled] if balances else []
     middle, end, call = together.call(), together.call(), models[0].call()
@@ -131,13 +138,13 @@ def run_in_lanes(
     turns = np.zeros(WIDTH, np.int64)
     turns[: len(samples)] = batch.begin_counting()
     one, entries = scratch(pattern, 0), len(pattern.rows)
-    damped = np.array([samples[number].dissipates for number in filled], dtype=np.int64)
-    flags = np.zeros((2, WIDTH), np.int64)
+    depends = np.array([damped(samples[number]) for number in filled], dtype=np.int64)
+    flags = np.zeros((3, WIDTH), np.int64)
     # Factors are kept side by side in the step; one workspace serves to make those of each lane.
     mass, damping, stiffness = np.zeros((3, WIDTH, entries))
     matrices = LaneMatrices(
         mass, damping, stiffness, np.zeros(WIDTH), np.zeros((WIDTH, entries + 1), np.int64), one.rigid, one.real,
-        one.doubles, damped, flags[0], flags[1],
+        one.doubles, depends, flags[0], flags[1], flags[2],
     )  # fmt: skip
     work = LanesRun(
         own, matrices, LaneSignals(addresses(models), call.address, call.signals), middle.signals, end.signals,
@@ -193,13 +200,21 @@ def _weigh_lanes(n, pattern, t, within, work):
 
 
 @inner
-def _renew_lane(problem, pattern, t, within, h, lane, work):
+def _renew_lane(problem, pattern, t, within, h, lane, means, work):
     """Bring the matrices of a lane to this place and to this step, where they are not; False where that fails."""
     stack, step, state = work.matrices, work.step, work.alone
     own, model = _matrices(pattern, stack, lane), work.source.models[lane]
     if stack.is_stale[lane] == 1:
-        take_lane(work.stacks[1], lane, state)
-        if not renew(problem, own, model, stack.damped[lane] == 1, t, within, state, work.source.call):
+        place, call_at(work.source.call).step = t, 0.0
+        if means:  # as in `midpoint_loop.integrate`
+            place, call_at(work.source.call).step = t + 0.5 * h, h
+            for i in range(len(state.x)):
+                state.x[i], state.v[i], state.a[i] = (
+                    step.rows[MIDDLE, i, lane], step.rows[MIDDLE_VELOCITY, i, lane], step.rows[ACCELERATIONS, i, lane]
+                )  # fmt: skip
+        else:
+            take_lane(work.stacks[1], lane, state)
+        if not renew(problem, own, model, stack.damped[lane] == 1, place, within, state, work.source.call):
             return False
         if not keep_factors(pattern.layout, own.rigid, lane, step.rigid):
             return False
@@ -251,7 +266,7 @@ def _record(problem, is_end, within, out, due, work):
 
 
 @inner
-def _advance(problem, pattern, t, target, within, tolerance, balance, work):
+def _advance(problem, pattern, t, target, last, within, tolerance, balance, work):
     """Take the step of all lanes that do not run alone; those whose step would have to be halved are marked."""
     n, step, stack, h = problem.n, work.step, work.matrices, target - t
     values, s = step.numbers, lane_rows(step.rows)
@@ -261,20 +276,24 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
     before = lane_state(work.stacks[0])
     for i in range(len(s.x0)):
         before.x[i], before.v[i], before.a[i] = start.x[i], start.v[i], start.a[i]
+    means = balance.converge != 0 and model_at(step.model).middle != step.model
     for lane in range(WIDTH):
         values[PENDING, lane] = 1.0 - step.alone[lane]
         stack.is_fresh[lane] = 0
     # Once with the matrices that are kept; lanes that fail once more with matrices of this place.
     for _ in range(2):
+        if means:
+            begin_by_means(n, h, last, before, missed, s)
+        else:
+            begin(n, h, before, missed, s)
         for lane in range(WIDTH):
-            if values[PENDING, lane] == 1.0 and not _renew_lane(problem, pattern, t, within, h, lane, work):
+            if values[PENDING, lane] == 1.0 and not _renew_lane(problem, pattern, t, within, h, lane, means, work):
                 step.alone[lane], values[PENDING, lane] = 1, 0.0
             # The way of the fastest step so far bounds what a correction may leave.
             work.least[lane] = h * values[SPEED, lane]
         # Forces are those of the middle, prescribed motions and their rates those of the end.
         set_lane_signals(t + 0.5 * h, within, work.source, work.middle)
         set_lane_signals(target, within, work.source, work.end)
-        begin(n, h, before, missed, s)
         call_at(step.middle).step = h if balance.converge != 0 else 0.0
         if balance.converge == 0:
             converge_lanes(problem, h, tolerance, work.least, s, step)
@@ -288,8 +307,8 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
             work.least[lane] = values[ARRIVED, lane]
         # Settled, the end of the step fulfils the constraints to rounding at the level of velocities.
         settle_lanes(
-            problem, step.masses, step.rigid, step.model, tried, work.moved, step.buffer, step.end, VELOCITY,
-            work.least, work.settled,
+            problem, step.masses, step.rigid, step.model, tried, work.moved, step.buffer, step.end,
+            ACCELERATION if means else VELOCITY, work.least, work.settled,
         )  # fmt: skip
         again = False
         for lane in range(WIDTH):
@@ -302,9 +321,10 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
             again = again or failed
             # A slow contraction asks for new matrices at the next step.
             if values[ARRIVED, lane] == 1.0:
-                stack.is_stale[lane] = 1 if values[RATE, lane] > AGED else 0
+                stack.is_stale[lane] = 1 if values[RATE, lane] > AGED or (means and stack.wary[lane] > 0) else 0
+                stack.wary[lane] = max(0, stack.wary[lane] - 1)
             elif failed:
-                stack.is_stale[lane] = 1
+                stack.is_stale[lane], stack.wary[lane] = 1, WARY
         # Lanes that have arrived keep their state and what the step missed; those that try again forget this.
         arrived, pending = numbers[ARRIVED] != 0.0, numbers[PENDING] != 0.0
         # The energy that the next step must have: that of the start and the work since.
@@ -314,13 +334,20 @@ def _advance(problem, pattern, t, target, within, tolerance, balance, work):
             start.x[i] = where(arrived, tried.x[i], start.x[i])
             start.v[i] = where(arrived, tried.v[i], start.v[i])
             start.a[i] = where(arrived, tried.a[i], start.a[i])
-            missed[0, i] = where(arrived, s.a[i] - before.a[i], where(pending, zero, missed[0, i]))
-            missed[1, i] = where(arrived, s.b[i] - before.a[i], where(pending, zero, missed[1, i]))
+            if means:  # `midpoint_step.keep_means`
+                missed[1, i] = where(arrived, 2.0 / (h + last) * (s.vm[i] - missed[0, i]), missed[1, i])
+                missed[0, i] = where(arrived, s.vm[i], missed[0, i])
+            else:
+                missed[0, i] = where(arrived, s.a[i] - before.a[i], where(pending, zero, missed[0, i]))
+                missed[1, i] = where(arrived, s.b[i] - before.a[i], where(pending, zero, missed[1, i]))
             numbers[SPEED] = where(arrived, larger(numbers[SPEED], sizes(s.vm[i]) / problem.scale[i]), numbers[SPEED])
         for i in range(n, len(s.x0)):
             start.x[i] = where(arrived, tried.x[i], start.x[i])
-            missed[0, i] = where(arrived, s.x0[i] - before.x[i], where(pending, zero, missed[0, i]))
-            missed[1, i] = where(arrived, s.x1[i] - before.x[i], where(pending, zero, missed[1, i]))
+            if means:
+                missed[0, i] = where(arrived, s.xm[i], missed[0, i])
+            else:
+                missed[0, i] = where(arrived, s.x0[i] - before.x[i], where(pending, zero, missed[0, i]))
+                missed[1, i] = where(arrived, s.x1[i] - before.x[i], where(pending, zero, missed[1, i]))
         if not again:
             break
 
@@ -349,10 +376,12 @@ def integrate_lanes(
         opening, nominal = t, (end - t) / steps
         # Behind a jump nothing that was kept is of this place.
         for lane in range(WIDTH):
-            work.matrices.is_stale[lane] = 1
+            work.matrices.is_stale[lane], work.matrices.wary[lane] = 1, 0
         for i in range(width):
             slope[0, i] = slope[1, i] = 0.0
-        work.last.times[1], h = t, 0.0
+        if balance.converge != 0 and model_at(own.model).middle != own.model:
+            open_means(problem.n, lane_state(work.stacks[1]), slope)
+        work.last.times[1], h, last = t, 0.0, 0.0
         for number in range(steps + 1):
             count_lanes(t, work.stacks[1], work.turns, work.alone)
             while due < len(times) and times[due] <= t + 1e-9 * h:
@@ -366,7 +395,8 @@ def integrate_lanes(
                 break
             target = end if number == steps - 1 else opening + nominal * (number + 1)
             h = target - t
-            _advance(problem, pattern, t, target, within, tolerance, balance, work)
+            _advance(problem, pattern, t, target, last, within, tolerance, balance, work)
+            last = h
             work.last.times[0], work.last.times[1] = t, target
             t = target
             if all_alone(own.alone):

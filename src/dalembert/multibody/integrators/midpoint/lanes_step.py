@@ -21,6 +21,7 @@ from dalembert.multibody.integrators.midpoint.midpoint_step import (
     scale_constraints,
     step_residuals,
     take_off,
+    takes_means,
 )
 from dalembert.multibody.integrators.shared.convergence import CLOSED, NOISE
 from dalembert.multibody.integrators.shared.lane_states import (
@@ -34,6 +35,7 @@ from dalembert.multibody.integrators.shared.matrices import Pattern, add_product
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.elementary import where
 from dalembert.multibody.kernels.sample_lanes import solve_samples
+from dalembert.multibody.kernels.states import clear
 
 PENDING, ITERATES, ARRIVED, NORM, BEFORE, RATE, FORCE, REMAINING, SPEED = range(9)
 """Rows of the numbers of lanes: see :class:`LanesStep`."""
@@ -103,7 +105,7 @@ def converge_lanes(problem, h, tolerance, least, s, scratch):
         lane_vector(b[5]),
     )  # fmt: skip
     numbers, push, real, rigid = lane_vector(values), lane_vector(scratch.push), scratch.real, scratch.rigid
-    zero, closed = 0.0 * s.v0[size], 0.0
+    zero, closed, means = 0.0 * s.v0[size], 0.0, takes_means(scratch.model, scratch.middle)
     for k in range(n):
         closed = max(closed, CLOSED * scale[k])
     # Lanes that run alone, or whose step is done, take part in the arithmetic, but their numbers do not change.
@@ -125,7 +127,10 @@ def converge_lanes(problem, h, tolerance, least, s, scratch):
         add_product(n, masses, masses.mass, first, 1.0, gap)
         scale_constraints(n, size, h, f, gap, rate)
         solve_samples(layout, real.matrix, real.pivots, real.tops, b[0], scratch.buffer, b[4])
-        solve_samples(layout, rigid.matrix, rigid.pivots, rigid.tops, b[1], scratch.buffer, b[5])
+        if means:
+            clear(other)
+        else:
+            solve_samples(layout, rigid.matrix, rigid.pivots, rigid.tops, b[1], scratch.buffer, b[5])
         for k in range(size):
             # A frozen lane takes off zero, which keeps its bits.
             first[k], other[k] = chosen(numbers[ITERATES], first[k]), chosen(numbers[ITERATES], other[k])

@@ -24,6 +24,7 @@ from dalembert.multibody.integrators.shared.matrices import (
 )
 from dalembert.multibody.integrators.shared.outputs import Outputs, outputs, record
 from dalembert.multibody.integrators.shared.problem import (
+    ACCELERATION,
     DONE,
     NEWTON_FAILED,
     SINGULAR,
@@ -36,11 +37,12 @@ from dalembert.multibody.integrators.shared.problem import (
 from dalembert.multibody.integrators.shared.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import Call
-from dalembert.multibody.kernels.records import call_at
+from dalembert.multibody.kernels.records import call_at, model_at
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, resting, row
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
 AGED = 0.05  # contraction at which the next step begins with new matrices
+WARY = 8  # steps that begin with new matrices after one that failed with kept ones
 _ENDS = 2  # of steps, between which outputs are interpolated
 
 
@@ -113,7 +115,7 @@ def _read(n, s, new):
 @kernel
 def differentiate(
     problem: IntegrationProblem, matrices: Matrices, directions: Integers, step: MidpointStep, balance: Balance,
-    strength: float, h: float,
+    strength: float, h: float, last: float,
     t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, scratch: Derivatives,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions."""
@@ -124,17 +126,25 @@ def differentiate(
         copy(dnew, dold)
         set_signals(perturbed, t + 0.5 * h, within, middle)
         set_signals(perturbed, target, within, end)
-        midpoint.begin(n, h, dold, slopes[d], ds)
         call_at(middle).step = h if balance.converge_along != 0 else 0.0
+        means = midpoint.takes_means(perturbed, middle)
+        if means:
+            midpoint.begin_by_means(n, h, last, dold, slopes[d], ds)
+        else:
+            midpoint.begin(n, h, dold, slopes[d], ds)
         if balance.converge_along == 0:
             midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         else:
             energies[d] += _balance_along_at(
                 balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step, along, balance
             )
-        midpoint.keep_missed(n, dold, ds, slopes[d])
+        if means:
+            midpoint.keep_means(n, h, last, ds, slopes[d])
+        else:
+            midpoint.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, VELOCITY)
+        level = ACCELERATION if means else VELOCITY
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, level)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
@@ -165,6 +175,7 @@ def integrate(
     energy, due = settings.energy, 0
     strength, gain = 0.0, 0.0
     speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
+    means = balance.converge != 0 and model_at(models.real).middle != models.real
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)
@@ -178,10 +189,15 @@ def integrate(
         steps = max(1, int(np.ceil((end - t) / settings.step - 1e-6)))
         # Steps of one length: a symmetric method keeps its invariants only then.
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
-        stale, fresh, made = True, True, 0.0
+        stale, fresh, made, wary = True, True, 0.0, 0
         _clear(slope)
         for d in range(len(models.directions)):
             _clear(slopes[d])
+        before = 0.0
+        if means:
+            midpoint.open_means(n, new, slope)
+            for d in range(len(models.directions)):
+                midpoint.open_means(n, row(dnews, d), slopes[d])
         last.known[0] = 0
         arrived = True
         while True:
@@ -194,14 +210,23 @@ def integrate(
                 due += 1
             if number == steps:
                 break
-            if stale:
-                if not renew(problem, matrices, models.tangents, settings.damped, t, within, new, complex_work):
-                    return SINGULAR, t, 0
-                stale, fresh, made = False, True, 0.0
             # A step that fails is halved towards the end of its nominal one, and doubled again afterwards.
             goal = end if number == steps - 1 else begin + nominal * (number + 1)
             target = goal if level == 0 else t + (goal - t) / (1 << level)
             h = target - t
+            call_at(step.middle).step = h if balance.converge != 0 else 0.0
+            if means:
+                midpoint.begin_by_means(n, h, before, new, slope, s)
+            else:
+                midpoint.begin(n, h, new, slope, s)
+            if stale:
+                state, place, call_at(complex_work).step = new, t, 0.0
+                if means:
+                    # Stiff directions of slender beams turn in the step, and damping depends on both ends.
+                    state, place, call_at(complex_work).step = MotionState(s.xm, s.vm, s.a, s.a), t + 0.5 * h, h
+                if not renew(problem, matrices, models.tangents, settings.damped, place, within, state, complex_work):
+                    return SINGULAR, t, 0
+                stale, fresh, made = False, True, 0.0
             # The matrix of the midpoint rule depends on h, that of the projection does not.
             if not abs(h - made) <= 1e-10 * h:
                 counts[2] += 1
@@ -211,8 +236,6 @@ def integrate(
             # Forces are those of the middle, prescribed motions and their rates those of the end.
             set_signals(models.real, t + 0.5 * h, within, step.middle)
             set_signals(models.real, target, within, step.end)
-            midpoint.begin(n, h, new, slope, s)
-            call_at(step.middle).step = h if balance.converge != 0 else 0.0
             if balance.converge == 0:
                 converged, iterations, rate, worst = midpoint.converge(
                     problem, matrices, models.real, h, step, settings.newton_tolerance, h * speed
@@ -227,20 +250,26 @@ def integrate(
                 _read(n, s, between)
                 # The end of the step fulfils the constraints to the tolerance of Newton; settled, to rounding, at the
                 # level of velocities, so that nothing drifts.
-                converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITY)
+                settled = ACCELERATION if means else VELOCITY
+                converged = settle(problem, matrices, models.real, between, moved, step.end, settled)
             if not converged:
                 counts[3] += 1
                 h, arrived = 0.0, False
-                _clear(slope)
+                if not means:
+                    _clear(slope)
                 if not fresh:  # once more with matrices of this place
-                    stale = True
+                    stale, wary = True, WARY
                 elif level == HALVINGS:
                     return NEWTON_FAILED, t, worst
                 else:
                     level += 1
+                    stale = means
                 continue
             # What this prediction missed is added to the next one: a forecast of second order without a stored history.
-            midpoint.keep_missed(n, new, s, slope)
+            if means:
+                midpoint.keep_means(n, h, before, s, slope)
+            else:
+                midpoint.keep_missed(n, new, s, slope)
             copy(between, new)
             # The energy that the next step must have: that of the start and the work since.
             energy += gain
@@ -248,11 +277,13 @@ def integrate(
                 speed = max(speed, abs(s.vm[k]) / scale[k])
             if len(models.directions) > 0:
                 _differentiate_at(
-                    derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, t,
-                    target, within, new, dnews, moved, derivatives,
+                    derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, before,
+                    t, target, within, new, dnews, moved, derivatives,
                 )  # fmt: skip
             note_step(log, iterations, target)
+            before = h
             number += 1 if level == 0 else 0
             level -= 1 if level > 0 else 0
-            t, fresh, stale, arrived = target, False, rate > AGED, True
+            t, fresh, stale, arrived = target, False, rate > AGED or (means and wary > 0), True
+            wary -= 1 if wary > 0 else 0
     return DONE, edges[-1], 0

@@ -8,13 +8,17 @@ those of the ends:
 
 with q_m and l_m the means of both ends. Newton's iteration takes the difference of both equations, in which the forces
 cancel: so one matrix of the implicit midpoint rule and one projection do.
+
+Methods that keep the energy take the constraint forces J(q_m)^T l_m in space, where constraints are quadratic in the
+coordinates: J(q_m) (q_1 - q_0) is what they change in the step, so that these forces do no work. Then a = b, and
+velocities satisfy the constraints in the middle of the step.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.kernel import inlined, inner, kernel
 from dalembert.kernels.words import Address, Complexes, Complexes2, Reals, Reals2
 from dalembert.multibody.integrators.shared.convergence import (
     BALANCED,
@@ -133,6 +137,45 @@ def begin(n, h, start, slope, s):
 
 
 @inner
+def begin_by_means(n, h, last, start, mean, s):
+    """A step ahead of a state, by the velocity ``mean[0]`` of the middle of the step before and its rate ``mean[1]``.
+
+    ``last``: length of the step before, 0 at the start of a stretch. Stiff vibrations that the step does not resolve
+    change the sign of their velocities at each end, but have none in the middle.
+    """
+    for k in range(len(start.x)):
+        s.x0[k] = start.x[k]
+        if k < n:
+            s.v0[k] = start.v[k]
+            s.a[k] = 2.0 / h * (mean[0, k] + 0.5 * (h + last) * mean[1, k] - start.v[k])
+            s.b[k] = s.a[k]
+        else:
+            s.x0[k] = s.x1[k] = mean[0, k]
+    place(n, h, s)
+
+
+@inner
+def open_means(n, start, mean):
+    """Velocities and multipliers of a start, as those of a step before."""
+    # Without accelerations: those of a beam that begins to turn, not yet stretched, are of its directors alone, so that
+    # it would be compressed, and slender ones buckle.
+    for k in range(len(start.x)):
+        mean[0, k] = start.v[k] if k < n else start.x[k]
+        mean[1, k] = 0.0
+
+
+@inner
+def keep_means(n, h, last, s, mean):
+    """Velocities of the middle of a step, their rate since the middle of the one before, and multipliers."""
+    for k in range(len(s.x0)):
+        if k < n:
+            mean[1, k] = 2.0 / (h + last) * (s.vm[k] - mean[0, k])
+            mean[0, k] = s.vm[k]
+        else:
+            mean[0, k] = s.xm[k]
+
+
+@inner
 def keep_missed(n, start, s, slope):
     """What accelerations and multipliers of a start missed in its step."""
     for k in range(len(start.x)):
@@ -142,16 +185,29 @@ def keep_missed(n, start, s, slope):
             slope[0, k], slope[1, k] = s.x0[k] - start.x[k], s.x1[k] - start.x[k]
 
 
+@inlined
+def takes_means(model, middle):
+    """Whether constraint forces are those of the middle of a step, see `BlockModel.averaged`."""
+    return call_at(middle).step != 0.0 and model_at(model).middle != model
+
+
 @inner
 def step_residuals(model, n, at, middle, end, f, gap, rate, second):
     """Fill the residuals of a step, in numbers of any kind; the signals of both calls hold the time. ``f``:
-    M a + F + J^T l at the start. ``gap``: J^T l at the end less that at the start, constraints at the end. ``rate``:
-    their rates.
+    M a + F + J^T l at the start, or in the middle. ``gap``: J^T l at the end less that at the start, constraints at the
+    end. ``rate``: their rates.
     """
     # M a + F(q_m, v_m) + J(q_m)^T l_m from one call of the kernels, less its constraint forces: what is left is M a +
     # F. Methods that keep the energy take forces of the ends in place of F(q_m, v_m), where components have them.
     forces = model if call_at(middle).step == 0.0 else model_at(model).middle
     residual(forces, n, at.xm, at.vm, at.a, middle, 1.0, f)
+    if takes_means(model, middle):
+        clear(gap)
+        clear(rate)
+        constraint_forces(model, at.x1, at.v1, at.b, end, gap)
+        for k in range(n):
+            gap[k] = 0.0
+        return
     clear(gap)
     constraint_forces(model, at.xm, at.vm, at.a, middle, gap)
     for k in range(n):
@@ -170,7 +226,7 @@ def step_residuals(model, n, at, middle, end, f, gap, rate, second):
 
 
 @inner
-def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
+def _correct(n, size, matrices, h, f, gap, rate, first, other, s, means):
     """Take Newton's correction off a step, by the residuals; ``f`` and ``gap`` become what accelerations moved. Two
     systems: [M + h/2 C + h^2/4 K, J^T; J, 0] for ``A``, and the same without C and K for ``B`` - ``A``: in the
     difference of both equations the forces cancel.
@@ -178,7 +234,10 @@ def _correct(n, size, matrices, h, f, gap, rate, first, other, s):
     scale_constraints(n, size, h, f, gap, rate)
     # First the implicit midpoint rule, then the projection of the velocities with the masses alone.
     solve(matrices.pattern.layout, matrices.real, f, first)
-    solve(matrices.pattern.layout, matrices.rigid, gap, other)
+    if means:
+        clear(other)
+    else:
+        solve(matrices.pattern.layout, matrices.rigid, gap, other)
     take_off(n, size, h, first, other, f, gap, s)
 
 
@@ -239,6 +298,7 @@ def converge(
     f, gap, rate, second, first, other = b[0], b[1], b[2], b[3], b[4], b[5]
     before, norm, contraction, worst = 0.0, 1.0, 1.0, 0
     closed, force, remaining = 0.0, 0.0, 0.0
+    means = takes_means(model, middle)
     for k in range(n):
         closed = max(closed, CLOSED * scale[k])
     for iteration in range(1, MOST_ITERATIONS + 1):
@@ -255,7 +315,7 @@ def converge(
             force = max(remaining, largest_entry(s.x0, n, size))
         # The difference of both equations: M (b - a) + (J(q_1)^T l_1 - J(q_0)^T l_0) = 0.
         add_product(n, matrices, mass, first, 1.0, gap)
-        _correct(n, size, matrices, h, f, gap, rate, first, other, s)
+        _correct(n, size, matrices, h, f, gap, rate, first, other, s, means)
         norm, way, worst = _sizes(n, h, scale, f, gap, s)
         way = max(least, way)
         if iteration > 1 and norm > NOISE * way:
@@ -331,7 +391,7 @@ def converge_along(
                 gap[k] += heavier[k]
                 first[k] = ds.b[k] - ds.a[k]
         add_product(n, matrices, mass, first, 1.0, gap)
-        _correct(n, size, matrices, h, f, gap, rate, first, other, ds)
+        _correct(n, size, matrices, h, f, gap, rate, first, other, ds, takes_means(perturbed, middle))
         # Against the derivatives of the end, which may grow from step to step.
         norm = _sizes(n, h, scale, f, gap, ds)[0]
         length = 0.0

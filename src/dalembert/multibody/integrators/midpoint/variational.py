@@ -87,7 +87,7 @@ class Variational(Integrator):
 
     def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
         """States of a group, and which samples have to run alone."""
-        return run_in_lanes(part, float(self.step), float(self.newton_tolerance))
+        return run_in_lanes(part, float(self.step), float(self.newton_tolerance), self._damped)
 
     def _one_by_one(self, batch: Batch) -> list[Run]:
         """Runs of samples one after the other."""
@@ -97,7 +97,7 @@ class Variational(Integrator):
             log = batch.log(self.step_ends(batch.end, lowered.jumps))
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
             energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
-            settings = MidpointSettings(float(self.step), float(self.newton_tolerance), lowered.dissipates, energy)
+            settings = MidpointSettings(float(self.step), float(self.newton_tolerance), self._damped(lowered), energy)
             calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.tangents))
             scratch = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
             status, time, unknown = integrate(
@@ -107,6 +107,10 @@ class Variational(Integrator):
             reason = None if status == DONE else explain(*given)
             runs.append(batch.result(reason, states, dout, log))
         return runs
+
+    def _damped(self, lowered: Lowered) -> bool:
+        """Whether the forces of a step depend on its velocities."""
+        return lowered.dissipates
 
     def _balance(
         self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float

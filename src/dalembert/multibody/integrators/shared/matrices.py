@@ -19,6 +19,7 @@ from dalembert.multibody.kernels.linear import (
     solve,
     storage,
 )
+from dalembert.multibody.kernels.records import call_at, model_at
 from dalembert.multibody.kernels.states import MotionState, clear
 from dalembert.multibody.model.structure import Structure
 
@@ -119,16 +120,20 @@ def renew(
     problem: IntegrationProblem, matrices: Matrices, tangent_model: Address, damped: bool, t: float, within: float,
     state: MotionState, complex_work: Address,
 ) -> bool:  # fmt: skip
-    """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular."""
+    """Evaluate stiffness (and damping, if ``damped``), and factorise [M, J^T; J, 0]; whether it is regular.
+
+    In a call with the length of a step they are those of the mean forces of the step, whose middle is the state.
+    """
     n = problem.n
     set_signals(tangent_model, t, within, complex_work)
     if matrices.pattern.varies:
         weigh_masses(matrices, tangent_model, n, state, complex_work)
     x, v, a, slots = state.x, state.v, state.a, matrices.pattern.slots
+    forces = tangent_model if call_at(complex_work).step == 0.0 else model_at(tangent_model).middle
     # K with J^T and J: the rows of constraints come with the coordinates, J^T with the multipliers.
-    tangent(tangent_model, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
+    tangent(forces, slots, n, x, v, a, (1.0, 0.0, 0.0), (1.0, 1.0), complex_work, matrices.stiffness)
     if damped:
-        tangent(tangent_model, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
+        tangent(forces, slots, n, x, v, a, (0.0, 1.0, 0.0), (1.0, 0.0), complex_work, matrices.damping)
     return _factorise(n, matrices, 0.0, 0.0, matrices.rigid)
 
 

@@ -18,7 +18,7 @@ CASES["cable"] = (*SCENES["cable"], CABLE)
 
 def of_step(model: BlockModel, kind, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, float]:
     """Mean forces of a kind alone in a step whose middle is ``x``, (N + 1,), and their power without a potential."""
-    (middle,) = (entry for entry in model.averaged()._kernels if isinstance(entry, BlockModel))
+    (middle,) = (entry for entry in model.averaged(True)._kernels if isinstance(entry, BlockModel))
     still, forces, totals = np.zeros_like(x), np.zeros_like(x), np.zeros(3)
     call = middle.call().set(x=x, v=v, a=still, r=forces, totals=totals, step=STEP)
     middle.each("residual", call, only=kind)

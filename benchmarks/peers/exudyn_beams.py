@@ -1,4 +1,4 @@
-"""Beams in space written for Exudyn: a cantilever that falls under its weight."""
+"""Beams in space written for Exudyn: a cantilever that falls under its weight, and an elbow."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -22,7 +22,7 @@ def cantilever(
 
     container = exu.SystemContainer()
 
-    def build() -> tuple[Any, int]:
+    def build() -> tuple[Any, list[int]]:
         system = container.AddSystem()
         h, count = length / elements, elements + 1
         if kind == CABLE:
@@ -58,10 +58,10 @@ def cantilever(
         for body in bodies:
             marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=system.AddObject(body)))
             system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(gravity)))
-        system.Assemble()
-        return system, nodes[-1]
+        return system, nodes[-1:]
 
-    return _runner(build, end, step, radius, dense)
+    run = runner(build, end, step, radius, dense)
+    return lambda: run()[-1]
 
 
 def elbow(
@@ -72,7 +72,7 @@ def elbow(
     mass, second = inertia
     container = exu.SystemContainer()
 
-    def build() -> tuple[Any, int]:
+    def build() -> tuple[Any, list[int]]:
         system, h = container.AddSystem(), length / elements
         section = exu.BeamSection()
         section.stiffnessMatrix, section.massPerLength = np.diag(stiffness), mass
@@ -95,33 +95,41 @@ def elbow(
         quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         system.AddObject(items.ObjectJointGeneric(markerNumbers=[corner, begin], rotationMarker0=quarter))
         system.AddLoad(items.LoadForceVector(markerNumber=corner, loadVector=[0, 0, force]))
-        system.Assemble()
-        return system, legs[1][-1]
+        return system, legs[1][-1:]
 
-    return _runner(build, end, step, radius, dense)
+    run = runner(build, end, step, radius, dense)
+    return lambda: run()[-1]
 
 
-def _runner(
-    build: Callable[[], tuple[Any, int]], end: float, step: float, radius: float, dense: bool
-) -> Callable[[], np.ndarray]:
-    """A function that simulates what ``build`` makes, and returns the position of its node at the end."""
+def runner(
+    build: Callable[[], tuple[Any, list[int]]], end: float, step: float, radius: float, dense: bool, samples: int = 1,
+    tolerance: float = 1e-8,
+) -> Callable[[], np.ndarray]:  # fmt: skip
+    """A function that simulates what ``build`` makes, and returns positions of its nodes, (samples, 3 nodes).
+
+    The samples are at equal distances in time, and the last one is at the end.
+    """
     settings = exu.SimulationSettings()
     steps = settings.timeIntegration
     steps.newton.useModifiedNewton = True
-    steps.newton.relativeTolerance = steps.newton.absoluteTolerance = 1e-8
+    steps.newton.relativeTolerance = steps.newton.absoluteTolerance = tolerance
     steps.numberOfSteps, steps.endTime = round(end / step), end
     steps.generalizedAlpha.spectralRadius = radius
     steps.verboseMode = 0
     settings.linearSolver.solverType = exu.LinearSolverType.EXUdense if dense else exu.LinearSolverType.EigenSparse
     settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = end / samples
     settings.displayStatistics = False
     settings.parallel.numberOfThreads = 1
 
-    system, tip = build()
+    system, nodes = build()
+    kept: dict[str, Any] = {"outputVariableType": exu.OutputVariableType.Position, "storeInternal": True}
+    sensors = [system.AddSensor(items.SensorNode(nodeNumber=node, writeToFile=False, **kept)) for node in nodes]
+    system.Assemble()
 
     def run() -> np.ndarray:
         if not system.SolveDynamic(settings, exu.DynamicSolverType.GeneralizedAlpha):
             raise RuntimeError("Exudyn could not integrate the model")
-        return np.array(system.GetNodeOutput(tip, exu.OutputVariableType.Position))
+        return np.hstack([system.GetSensorStoredData(sensor)[-samples:, 1:] for sensor in sensors])
 
     return run

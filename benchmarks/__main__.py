@@ -35,7 +35,7 @@ NAMES = (
 
 MORE = {
     "bolted": ("vibration-cost",),
-    "flexible": ("flexible-elbow", "flexible-chains"),
+    "flexible": ("flexible-elbow", "flexible-slider-crank", "flexible-chains"),
     "spatial": ("spatial-sensitivities",),
 }
 PAGES = tuple(page for name in NAMES for page in (name, *MORE.get(name, ())))

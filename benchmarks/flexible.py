@@ -8,7 +8,7 @@ import numpy as np
 
 import dalembert as da
 import dalembert.multibody.spatial as sp
-from benchmarks import timing
+from benchmarks import flexible_crank, timing
 from benchmarks.peers import exudyn_beams as peers
 
 LENGTH, SIDE, MODULUS, RATIO, DENSITY = 1.0, 0.02, 1e9, 0.3, 1000.0
@@ -28,6 +28,7 @@ ELBOWS, THEIR_ELBOWS, CHAINS = {2: (2, 4, 8), 3: (1, 2, 4)}, (5, 10, 20, 40), (1
 
 def main() -> list[dict[str, object]]:
     elbows()
+    flexible_crank.main()
     chains()
     return cantilevers()
 

@@ -15,7 +15,7 @@ STEP = 1e-30
 def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[tuple[float, Mesh]]:
     """Times and meshes of a motion: bodies as lines, or vertices where they are points, and joints as vertices.
 
-    Bodies in space with shapes are triangles, too; those of beams have strains.
+    Bodies in space with shapes are triangles, too; those of beams and of reduced bodies have strains.
     """
     rows = chosen(len(trajectory.times), frames)
     times, states = trajectory.times[rows], trajectory.states
@@ -51,14 +51,14 @@ def motion(trajectory: Trajectory, frames: int | None, points: int) -> Iterator[
 
 
 def _strains(drawn: Drawing, shape: tuple[int, int]) -> np.ndarray | None:
-    """Strains along beams at their corners, (frames, points), zero at other points; None without such corners."""
+    """Strains at corners of surfaces, (frames, points), zero at other points; None without such corners."""
     if all(surface.strains is None for surface in drawn.surfaces.values()):
         return None
     values, at = np.zeros(shape), shape[1] - sum(surface.corners.shape[-2] for surface in drawn.surfaces.values())
     for surface in drawn.surfaces.values():
         count = surface.corners.shape[-2]
         if surface.strains is not None:
-            values[:, at : at + count] = surface.strains
+            values[:, at : at + count] = surface.strains[:]
         at += count
     return values
 

@@ -22,6 +22,7 @@ from dalembert.structure.interface_nodes import (
     ties_of,
 )
 from dalembert.structure.structure import Structure, changed, known_nodes
+from dalembert.structure.surface_strains import surface_strains
 
 DEPENDENT = 1e-10
 """Part of a motion's energies that other motions leave, below which it counts as one of theirs."""
@@ -63,6 +64,9 @@ class FreeBodyModes:
         Rows of ``places``, to draw the body; none where the structure has none.
     recovery : mapping of str to array, shape (modes,)
         Strains, stresses and other quantities by the modal coordinates, for sensors.
+    strains : array, shape (nodes of faces, 6, modes), optional
+        Strains xx, yy, zz, yz, zx, xy of each mode, 1/m, at the nodes of ``faces`` in ascending order, for drawings.
+        Shears are half of the changed angles. A node has the mean of its elements. None without a mesh of solids.
     """
 
     pseudo_inertia: np.ndarray
@@ -79,6 +83,7 @@ class FreeBodyModes:
     shapes: np.ndarray
     faces: np.ndarray
     recovery: Mapping[str, np.ndarray] = field(default_factory=dict)
+    strains: np.ndarray | None = None
 
     IN_WORDS = "FreeBodyModes, such as free_body_modes(structure, {'end': 'right'})"
 
@@ -210,6 +215,7 @@ def free_body_modes(
     first, second = integrals(structure, rows, motion)
     reduced = changed(structure, lambda matrix: motion.T @ (matrix @ motion))
     interface_shapes = [np.linalg.lstsq(tie.motion, motion[tie.rows], rcond=None)[0] for tie in ties]
+    node_motion = node_shapes(rows, motion, len(nodes.names))
     return FreeBodyModes(
         pseudo_inertia=pseudo,
         first=first,
@@ -222,9 +228,10 @@ def free_body_modes(
         interface_shapes=np.array(interface_shapes),
         centre=centre,
         places=nodes.places - centre,
-        shapes=node_shapes(rows, motion, len(nodes.names)),
+        shapes=node_motion,
         faces=np.zeros((0, 3), dtype=int) if nodes.faces is None else nodes.faces,
         recovery={name: _row(structure, name, entry) @ motion for name, entry in (recovery or {}).items()},
+        strains=surface_strains(nodes, node_motion),
     )
 
 

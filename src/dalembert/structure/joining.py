@@ -106,7 +106,7 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
     structure : Structure
     joined : sequence of (kept node, node)
         The second one of each pair moves with the first, in every direction that both have, and leaves the structure;
-        in sets of nodes and faces the first takes its place.
+        in sets of nodes, faces and elements the first takes its place.
 
     Raises
     ------
@@ -137,7 +137,8 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
         }
         rows = {name: row for row, name in enumerate(nodes.names)}
         members = np.array([rows[keeper.get(name, name)] for name in nodes.names], dtype=int)
-        nodes = replace(nodes, sets=sets, faces=None if nodes.faces is None else members[nodes.faces])
+        cells = (None if rows is None else members[rows] for rows in (nodes.faces, nodes.elements))
+        nodes = Nodes(nodes.names, nodes.places, sets, *cells)
     return replace(structure, dofs=Dofs(names), nodes=nodes, **changed(structure, tied))
 
 
@@ -146,10 +147,9 @@ def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:
         return None
     every = {part: structure.nodes for part, structure in parts.items() if structure.nodes is not None}
     starts = np.cumsum([0, *(len(nodes.names) for nodes in every.values())])
-    faces = [
-        nodes.faces + start
+    cells = [
+        [rows if rows is None else rows + start for rows in (nodes.faces, nodes.elements)]
         for nodes, start in zip(every.values(), starts, strict=False)
-        if nodes.faces is not None and nodes.faces.shape[1] == 4
     ]
     return Nodes(
         tuple(f"{part}/{name}" for part, nodes in every.items() for name in nodes.names),
@@ -159,5 +159,12 @@ def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:
             for part, nodes in every.items()
             for name, members in nodes.sets.items()
         },
-        np.vstack(faces) if len(faces) == len(every) else None,
+        *(_stacked(rows) for rows in zip(*cells, strict=True)),
     )
+
+
+def _stacked(parts: Sequence[np.ndarray | None]) -> np.ndarray | None:
+    """Faces or elements of all parts; None where they are of several kinds, or a part has none."""
+    known = [part for part in parts if part is not None]
+    kinds = {part.shape[1] for part in known}
+    return np.vstack(known) if len(known) == len(parts) and len(kinds) == 1 else None

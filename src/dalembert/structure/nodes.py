@@ -24,11 +24,13 @@ class Nodes:
         Names of nodes by the name of their set.
     faces : array of int, shape (faces, 3 or 4), optional
         Rows of ``places``, triangles or quadrilaterals, to draw the structure.
+    elements : array of int, shape (elements, 10, 20 or 27), optional
+        Rows of ``places`` of the nodes of tetrahedra or bricks, for strains; in the order of scikit-fem.
 
     Raises
     ------
     InputError
-        For places that do not fit the names, or a set with an unknown node.
+        For places that do not fit the names, a set with an unknown node, or elements of another kind.
 
     Examples
     --------
@@ -43,6 +45,7 @@ class Nodes:
     places: np.ndarray
     sets: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     faces: np.ndarray | None = None
+    elements: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "names", tuple(map(str, self.names)))  # not those of NumPy, which print their type
@@ -60,6 +63,11 @@ class Nodes:
             for node in members:
                 if node not in self._rows:
                     raise InputError(unknown("node", node, self.names, f"Nodes: set {name!r}"))
+        if self.elements is not None and np.shape(self.elements)[1:] not in ((10,), (20,), (27,)):
+            raise InputError(
+                f"Nodes: the elements have shape {np.shape(self.elements)}; expected 10, 20 or 27 nodes of each. Leave "
+                "out elements of other kinds"
+            )
 
     def nearest(self, place: Sequence[float]) -> str:
         """Name of the node nearest to a place (x, y) or (x, y, z) in m; the first one where several are."""

@@ -153,7 +153,9 @@ def solid(mesh: Any, material: Material | Mapping[str, Material], element: str |
         assemble(_mass(weighing, density), dofs, size),
         assemble(_stiffness(basis, first, second), dofs, size),
         Dofs(tuple(f"{name}.{direction}" for name in names for direction in "xyz")),
-        nodes=Nodes(names, places, boundaries | node_sets, mesh.facets[:, mesh.boundary_facets()].T),
+        nodes=Nodes(
+            names, places, boundaries | node_sets, mesh.facets[:, mesh.boundary_facets()].T, basis.element_dofs.T
+        ),
     )
 
 

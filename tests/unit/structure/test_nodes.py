@@ -38,6 +38,11 @@ def test_a_set_of_nodes_is_clamped() -> None:
             "unknown node set 'ends'; did you mean 'end'?",
         ),
         (lambda: Nodes(("a", "b", "c"), PLACES).rows(["d"]), "unknown node 'd'; known: a, b, c"),
+        (
+            lambda: Nodes(("a", "b", "c"), PLACES, elements=np.array([[0, 1, 2]])),
+            "Nodes: the elements have shape (1, 3); expected 10, 20 or 27 nodes of each. Leave out elements of other "
+            "kinds",
+        ),
     ],
 )
 def test_what_does_not_fit_is_told(make, sentence: str) -> None:

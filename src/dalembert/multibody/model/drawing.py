@@ -25,8 +25,8 @@ class Drawing:
     axes : mapping of body to array (frames, 4, 3)
         Origin in m and axes of bodies in space.
     surfaces : mapping of body to Surface
-        In the axes of bodies that have shapes; of beams with the section's outline in the fixed axes, with corners
-        (frames, corners, 3), and with strains.
+        In the axes of bodies that have shapes; of beams with the section's outline and of reduced bodies in the fixed
+        axes, with corners (frames, corners, 3), and with strains.
     ground : Surface, optional
         Of the ground, in the fixed axes.
     """

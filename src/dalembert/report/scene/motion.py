@@ -33,8 +33,8 @@ Lines = Mapping[str, np.ndarray]
 def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured: Lines) -> Scene:
     """Return bodies, their axes and joints of a drawing at some of its frames, paths, and measured positions.
 
-    The lines of more than seven bodies become one with gaps; so do a few poses along the motion. Beams have the
-    colours of their strains.
+    The lines of more than seven bodies become one with gaps; so do a few poses along the motion. Beams and reduced
+    bodies have the colours of their strains.
     """
     lines = {name: np.asarray(line)[frames] for name, line in drawing.lines.items()}
     joints = {name: np.asarray(at)[frames] for name, at in drawing.joints.items()}
@@ -55,13 +55,13 @@ def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured
     if len(drawn) > FEW_BODIES:
         drawn = {f"{len(drawn)} bodies": joined(drawn)}
     shapes += [Primitive("line", "body", name, line, numbers.get(name, 0)) for name, line in drawn.items()]
-    strains = [surface.strains[frames] for surface in surfaces.values() if surface.strains is not None]
-    highest = max((float(own.max()) for own in strains), default=0.0)
+    strains = {name: surface.strains[frames] for name, surface in surfaces.items() if surface.strains is not None}
+    highest = max((float(own.max()) for own in strains.values()), default=0.0)
     for name, surface in surfaces.items():
         deforms = surface.corners.ndim == 3
         corners = surface.corners[frames] if deforms else surface.corners[None]
         poses = None if deforms else drawing.axes[name][frames]
-        values = None if surface.strains is None or not highest else surface.strains[frames]
+        values = strains.get(name) if highest else None
         shapes.append(
             Primitive("surface", "body", name, corners, numbers[name], surface.triangles, poses=poses, values=values)
         )
@@ -71,7 +71,8 @@ def motion_scene(drawing: Drawing, frames: np.ndarray, *, paths: Lines, measured
         shapes.append(Primitive("ground" if is_still else "joint", "joint", name, at[: 1 if is_still else None, None]))
     if in_space and 0 < len(drawing.axes) <= FEW_BODIES:
         shapes += _axes({name: axes[frames] for name, axes in drawing.axes.items()}, AXIS * size)
-    bar = ColourBar("strain along beams", highest) if highest else None
+    measures = {surfaces[name].measure for name in strains}
+    bar = ColourBar(measures.pop() if len(measures) == 1 else "strain", highest) if highest else None
     return Scene(tuple(shapes), times=np.asarray(drawing.times, dtype=float)[frames], bar=bar)
 
 

@@ -14,7 +14,7 @@ SHAPES = [Shape.box((0.1, 0.2, 0.3), TURNED), Shape.cylinder(0.1, 0.5, TURNED), 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
 def test_surfaces_are_closed_and_face_outwards(shape):
-    corners, triangles, _ = shape.surface
+    corners, triangles, *_ = shape.surface
     a, b, c = corners[triangles].swapaxes(0, 1)
     np.testing.assert_allclose(np.cross(b - a, c - a).sum(axis=0), 0.0, atol=1e-15)  # of a closed surface
     inside = np.einsum("ti,ti->", a - TURNED.position, np.cross(b - a, c - a)) / 6

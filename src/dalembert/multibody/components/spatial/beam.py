@@ -279,7 +279,7 @@ class Beam(NodeChain, Body):
         # Along the line, at the corner (y, z): stretch + z K_y - y K_z.
         strain = np.abs(e[..., 0] + rings[:, 1].T * e[..., 4] - rings[:, 0].T * e[..., 5])
         corners = surface.reshape(len(surface), -1, 3)
-        return Surface(corners, _tube(len(at), len(rings)), strain.reshape(len(surface), -1))
+        return Surface(corners, _tube(len(at), len(rings)), strain.reshape(len(surface), -1), "strain along beams")
 
     def _elastic_strains(self, nodes: np.ndarray, shares: np.ndarray) -> np.ndarray:
         """Strains less those without stress at shares of the elements, (frames, elements, shares, 6).

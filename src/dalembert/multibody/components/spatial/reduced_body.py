@@ -16,6 +16,7 @@ from dalembert.multibody.components.spatial import spatial_markers as markers
 from dalembert.multibody.components.spatial.directors import DIRECTORS
 from dalembert.multibody.components.spatial.ground_points import Place
 from dalembert.multibody.components.spatial.linear_deformation import deformation_findings
+from dalembert.multibody.components.spatial.modal_strains import ModalStrains
 from dalembert.multibody.components.spatial.node_point import NodePoint
 from dalembert.multibody.components.spatial.orientation import Orientation, Vector
 from dalembert.multibody.components.spatial.reduced_kinds import INTERFACE, MODE, PAIR
@@ -194,11 +195,20 @@ class ReducedBody(Body):
         return coarse_surface(self.modes.places, self.modes.faces, MOST_CORNERS)
 
     def skin(self, coordinates: np.ndarray) -> Surface | None:
-        """The surface of the finite element model, with the deformation."""
+        """The surface of the finite element model with the deformation, and the largest principal strain.
+
+        In tension and bending this is the strain along the body, as beams have it: one colour bar serves both. An
+        equivalent strain of von Mises would differ from it by a factor that depends on Poisson's ratio.
+        """
         rows, triangles = self._drawn
         if not len(triangles):
             return None
-        return Surface(self._deformed(coordinates, self.modes.places[rows], self.modes.shapes[rows]), triangles)
+        corners = self._deformed(coordinates, self.modes.places[rows], self.modes.shapes[rows])
+        if self.modes.strains is None:
+            return Surface(corners, triangles)
+        strains = self.modes.strains[np.searchsorted(np.unique(self.modes.faces), rows)]
+        eta = coordinates[:, -self.modes.count :]
+        return Surface(corners, triangles, ModalStrains(strains, eta), "largest principal strain")
 
     def moving_axes(self, coordinates: np.ndarray) -> np.ndarray:
         return coordinates[:, : markers.SLOTS].reshape(-1, 4, 3)

@@ -13,6 +13,7 @@ from dalembert.errors import InputError, require_known, shown
 from dalembert.multibody.components.fields import Number, number
 from dalembert.multibody.components.spatial.inertia import Inertia
 from dalembert.multibody.components.spatial.mesh_files import triangles_of
+from dalembert.multibody.components.spatial.modal_strains import ModalStrains
 from dalembert.multibody.components.spatial.orientation import Pose, Vector
 
 BOX, CYLINDER, SPHERE, MESH = KINDS = "box", "cylinder", "sphere", "mesh"
@@ -27,12 +28,13 @@ class Surface(NamedTuple):
     """Corners (corners, 3) in the axes of a body, m, and triangles (triangles, 3) between them, by their numbers.
 
     Corners of a body that deforms are (frames, corners, 3), in the fixed axes; ``strains`` (frames, corners) of it are
-    the magnitudes of its strain.
+    the magnitudes of its strain, and ``measure`` is what this strain is, in words.
     """
 
     corners: np.ndarray
     triangles: np.ndarray
-    strains: np.ndarray | None = None
+    strains: np.ndarray | ModalStrains | None = None
+    measure: str = ""
 
 
 @dataclass(frozen=True)
@@ -128,7 +130,8 @@ class Shape(Checked):
                 return None
             corners, triangles = mesh[0] * np.real(self.sizes), mesh[1]
         else:
-            corners, triangles, _ = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
+            own = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
+            corners, triangles = own.corners, own.triangles
         axes = np.real(self.pose.orientation.matrix)
         return Surface(corners @ axes.T + np.real(self.pose.position), triangles)
 

@@ -9,8 +9,12 @@ import pytest
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 from dalembert.errors import InputError, ModelError
+from dalembert.export.mechanism import motion as vtk_motion
+from dalembert.multibody.components.spatial.modal_strains import largest_principal
 from dalembert.multibody.components.spatial.reduced_body import coarse_surface
 from dalembert.multibody.model.lowering import lower
+from dalembert.report import Animation
+from dalembert.report.player.film import encoded
 from dalembert.structure import FreeBodyModes, Material, box, free_body_modes, solid, strain_between
 
 
@@ -104,6 +108,73 @@ def test_the_drawing_is_the_deformed_surface() -> None:
     assert surface.triangles.max() == len(first) - 1
     lines = body.outline(coordinates, 2)
     np.testing.assert_allclose(lines[0], [[0.2, 0, 0], [0, 0, 0], [0.2, 0, 0], [0.4, 0, 0], [0.2, 0, 0]], atol=1e-12)
+
+
+def strip() -> tuple[sp.SpatialSystem, sp.ReducedBody]:
+    """The bar clamped at its foot, at rest at first."""
+    system = sp.SpatialSystem(gravity=(0.0, 0.0, 0.0))
+    body = system.add(sp.ReducedBody("bar", bar(), anchor="foot"))
+    system.add(sp.FixedJoint("clamp", system.ground, body.point("foot")))
+    system.start = "equilibrium"
+    return system, body
+
+
+def test_its_colours_are_the_strains_of_tension_and_bending() -> None:
+    x, _, z = (bar().places[np.unique(bar().faces)] + (0.2, 0.0, 0.0)).T
+    inner = (x > 0.1) & (x < 0.3)  # away from the rigid ends
+    outer = inner & (np.abs(z) > 0.014)
+    area, about_y = 0.02 * 0.03, 0.02 * 0.03**3 / 12
+    push = sp.Force("push", strip()[1].point("tip"), x=-600.0)
+    turn = sp.Torque("turn", strip()[1].point("tip"), y=1.0)
+    bend = sp.Force("bend", strip()[1].point("tip"), z=2.0)
+    cases = (
+        (push, inner, np.full(len(x), 600.0 / (2e9 * area)), 0.01),
+        (turn, inner, np.abs(z) / (2e9 * about_y), 0.01),
+        (bend, outer, 2.0 * (0.4 - x) * np.abs(z) / (2e9 * about_y), 0.02),
+    )
+    for load, where, expected, error in cases:
+        system, body = strip()
+        system.add(replace(load, at=body.point("tip")))
+        still = mb.simulate(system, 0.01, mb.GeneralizedAlpha(step=1e-3))
+        scene = Animation.of(still.drawing()).scene
+        (shape,) = (entry for entry in scene.primitives if entry.kind == "surface")
+        assert shape.values.shape == shape.points.shape[:2]
+        np.testing.assert_allclose(shape.values[0][where], expected[where], atol=error * expected[where].max())
+        assert (scene.bar.title, scene.bar.highest) == ("largest principal strain", shape.values.max())
+        ((_, mesh), *_) = vtk_motion(still, 1, 4)
+        np.testing.assert_allclose(mesh.fields["strain"][-len(x) :], shape.values[0], rtol=1e-12)
+        assert not mesh.fields["strain"][: -len(x)].any()
+        assert [entry["values"] for entry in encoded(scene)["shapes"] if "values" in entry] == [len(shape.values)]
+
+
+def test_one_bar_explains_colours_of_beams_and_reduced_bodies() -> None:
+    system, body = strip()
+    section = sp.Section.rectangle(0.03, 0.02, youngs_modulus=2e9, poisson_ratio=0.3, density=1200.0)
+    rod = system.add(sp.Beam("rod", section, 0.4, 2, position=body.point("tip")))
+    system.add(sp.FixedJoint("weld", body.point("tip"), rod.start))
+    system.add(sp.Force("pull", rod.end, x=600.0))
+    scene = Animation.of(mb.equilibrium(system).drawing()).scene
+    shapes = {entry.name: entry.values[0] for entry in scene.primitives if entry.kind == "surface"}
+    assert scene.bar.title == "strain"
+    np.testing.assert_allclose(shapes["rod"], 5e-4, rtol=1e-2)
+    assert np.median(shapes["bar"]) == pytest.approx(5e-4, rel=1e-2)
+
+
+def test_a_body_without_a_mesh_of_solids_has_no_colours() -> None:
+    system = sp.SpatialSystem()
+    body = system.add(sp.ReducedBody("bar", replace(bar(), strains=None)))
+    surface = body.skin(lower(system).x[None, : body.size])
+    assert surface.strains is None
+    scene = Animation.of(mb.simulate(system, 0.01, mb.GeneralizedAlpha(step=1e-3)).drawing()).scene
+    assert scene.bar is None
+
+
+def test_the_largest_principal_strain_is_the_largest_eigenvalue() -> None:
+    strains = np.random.default_rng(1).standard_normal((200, 6))
+    strains[0], strains[1, 3:], strains[2] = 0.0, 0.0, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
+    matrices = strains[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
+    expected = np.abs(np.linalg.eigvalsh(matrices)).max(axis=1)
+    np.testing.assert_allclose(largest_principal(strains), expected, atol=1e-12)
 
 
 def test_a_fine_surface_is_drawn_by_few_corners() -> None:

@@ -56,9 +56,9 @@ from dalembert.multibody.motion.compare_integrators import work_precision as wor
 from dalembert.multibody.motion.simulation import simulate as simulate
 from dalembert.multibody.motion.time_response import TimeResponse as TimeResponse
 from dalembert.multibody.motion.trajectory import Trajectory as Trajectory
-from dalembert.multibody.start.equilibrium_path import CriticalPoint as CriticalPoint
-from dalembert.multibody.start.equilibrium_path import EquilibriumPath as EquilibriumPath
 from dalembert.multibody.start.equilibrium_path import equilibrium_path as equilibrium_path
+from dalembert.multibody.start.path_result import CriticalPoint as CriticalPoint
+from dalembert.multibody.start.path_result import EquilibriumPath as EquilibriumPath
 from dalembert.multibody.start.statics import Equilibrium as Equilibrium
 from dalembert.multibody.start.statics import equilibrium as equilibrium
 from dalembert.multibody.steady.campbell_diagram import campbell as campbell

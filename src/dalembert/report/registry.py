@@ -14,7 +14,7 @@ Sections = Callable[[Any, ReportOptions], list[Section]]
 Function = TypeVar("Function", bound=Sections)
 _MODULES = {
     "inverse": "fit assessment alternative inertial",
-    "multibody": "motion",
+    "multibody": "motion path",
     "study": "motion",
     "structure": "mode",
     "uncertainty": "bound",

@@ -1,7 +1,7 @@
 """Equilibria along a load, past limit points, with the loads at which they become unstable."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,9 +17,20 @@ from dalembert.multibody.model.evaluate import residual, tangent
 from dalembert.multibody.model.lowered import Lowered, scales
 from dalembert.multibody.model.lowering import lower
 from dalembert.multibody.model.observe import observer
-from dalembert.multibody.model.system import BaseSystem
 from dalembert.multibody.start.equilibrium_start import resting_place
 from dalembert.multibody.start.mixed_points import MixedPoints
+from dalembert.multibody.start.path_result import (
+    AWAY,
+    BRANCH,
+    END,
+    LIMIT,
+    POINTS,
+    SYMMETRIC_PART,
+    Build,
+    CriticalPoint,
+    EquilibriumPath,
+    observed,
+)
 from dalembert.multibody.start.static_stability import Stability, stability
 from dalembert.multibody.start.statics import placed_at_start
 
@@ -46,71 +57,21 @@ _ASYMMETRY = 1e-8
 """Of a stiffness, relative, beyond rounding: loads that follow the motion."""
 
 
-@dataclass(frozen=True, eq=False)
-class CriticalPoint:
-    """An equilibrium at which the stiffness against a motion vanishes.
-
-    Parameters
-    ----------
-    load : float
-    kind : {"limit", "branch", "symmetric part"}
-        At a limit point the load turns; at a branch point other equilibria begin: the structure buckles. Where the
-        stiffness is not symmetric, as under follower loads, the eigenvalue is that of its symmetric part, and the point
-        need be neither.
-    x : array, shape (N + 1,)
-        As of an :class:`Equilibrium`.
-    shape : array, shape (N + 1,)
-        The motion without stiffness; its entry of largest magnitude is 1. Rows of multipliers are zero.
-    gap : float
-        Distance of the two loads between which the point lies, where the search for it failed; else 0.
-    """
-
-    load: float
-    kind: str
-    x: np.ndarray
-    shape: np.ndarray
-    gap: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class EquilibriumPath:
-    """Equilibria along a load, as :func:`equilibrium_path` returns them.
-
-    Parameters
-    ----------
-    loads : array, shape (points,)
-    stable : array of bool, shape (points,)
-        Whether every motion that the joints leave free has a positive stiffness.
-    critical : tuple of CriticalPoint
-        In the order of the path.
-    x : array, shape (points, N + 1)
-        States, as of an :class:`Equilibrium`.
-    ended : {"end", "points", "away"}
-        Why the path ends: the load reached ``end``; there are ``most_points``; the load went away from ``end`` by more
-        than twice the range.
-    """
-
-    loads: np.ndarray
-    stable: np.ndarray
-    critical: tuple[CriticalPoint, ...]
-    x: np.ndarray
-    ended: str
-    build: Callable[[float], BaseSystem]
-
-    def channels(self, names: Sequence[str]) -> np.ndarray:
-        """Values of channels along the path, (points, channels)."""
-        names, values = names_of(names, "EquilibriumPath", "channels"), []
-        for load, x in zip(self.loads, self.x, strict=True):
-            system, still = self.build(float(load)), np.zeros((1, len(x)))
-            lowered = lower(system)
-            readers = observer(system, lowered, names)
-            values.append(readers.read(lowered, lowered.real, (x[None], still, still), np.zeros(1))[0])
-        return np.array(values)
+OnPoint = Callable[[float, bool], None]
 
 
 @takes_checked("build")
 def equilibrium_path(
-    build: Callable[[float], BaseSystem], start: float, end: float, steps: int = 20, most_points: int = 500
+    build: Build,
+    start: float,
+    end: float,
+    steps: int = 20,
+    most_points: int = 500,
+    *,
+    channels: Sequence[str] = (),
+    parameter: str = "load",
+    unit: str = "",
+    on_point: OnPoint | None = None,
 ) -> EquilibriumPath:
     """Follow the equilibria of a mechanism from one load to another, past limit points.
 
@@ -130,11 +91,22 @@ def equilibrium_path(
         Number of steps in the range of the load, for the length of the first one; later ones adapt.
     most_points : int
         Where the path ends at the latest, as where the load never reaches ``end``; at least 2.
+    channels : sequence of str
+        Channels that the result keeps; its figures show them over the load.
+    parameter, unit : str
+        Name and unit of the load, for tables and figures.
+    on_point : callable, optional
+        Is called with the load of each point, and whether it is stable.
+
+    Returns
+    -------
+    EquilibriumPath
 
     Raises
     ------
     InputError
-        For a range without a length, and for reduced bodies: their bending stiffness does not follow axial forces.
+        For a range without a length, for unknown channels, and for reduced bodies: their bending stiffness does not
+        follow axial forces.
     SolveError
         Where no equilibrium is found at the start, or at the end of the shortest step.
 
@@ -169,18 +141,33 @@ def equilibrium_path(
             f"equilibrium_path: steps is {steps} and most_points {most_points}; expected 1 or more steps, and 2 or "
             "more points"
         )
+    names = names_of(channels, "equilibrium_path", "channels")
     follower = _Follower(build, start, end, steps)
-    points, critical, ended = [follower.first()], [], "points"
-    while len(points) < most_points and ended == "points":
+    units = tuple(channel.unit for channel in observer(build(follower.start), follower.placed, names).channels)
+    points, critical, ended = [follower.first()], [], POINTS
+    while True:
+        if on_point:
+            on_point(points[-1].load, points[-1].stability.negatives == 0)
+        if len(points) >= most_points or ended != POINTS:
+            break
         point, ended = follower.following(points[-1])
-        critical += follower.between(points[-1], point)
+        critical += [replace(found, after=len(points) - 1) for found in follower.between(points[-1], point)]
         points.append(point)
+    loads, x = np.array([point.load for point in points]), np.array([point.x for point in points])
+    critical_x = np.array([point.x for point in critical]).reshape(-1, x.shape[1])
     return EquilibriumPath(
-        np.array([point.load for point in points]),
+        loads,
         np.array([point.stability.negatives == 0 for point in points]),
         tuple(critical),
-        np.array([point.x for point in points]),
+        x,
         ended,
+        float(end),
+        parameter,
+        unit,
+        tuple(names),
+        units,
+        observed(build, names, loads, x),
+        observed(build, names, np.array([point.load for point in critical]), critical_x),
         build,
     )
 
@@ -222,7 +209,7 @@ class _LostError(Exception):
 class _Follower:
     """The path of one mechanism. Lengths are those of (coordinates over their scales, load over its range)."""
 
-    def __init__(self, build: Callable[[float], BaseSystem], start: float, end: float, steps: int) -> None:
+    def __init__(self, build: Build, start: float, end: float, steps: int) -> None:
         self.build, self.start, self.end = build, float(start), float(end)
         self.range, self.length = end - start, 1.0 / steps
         self.step, self.softest = self.length, 0.0
@@ -270,14 +257,16 @@ class _Follower:
         grown = float(np.clip((_FEW_ITERATIONS / iterations) ** 0.5, 0.5, 1.5))
         self.step = min(self.step * grown, _LONGEST * self.length)
         if (following.load - self.end) * self.range >= 0.0:
-            return self._at_load(point, following) or following, "end"
-        return following, "away" if (following.load - self.start) / self.range < -_FAR else "points"
+            return self._at_load(point, following) or following, END
+        return following, AWAY if (following.load - self.start) / self.range < -_FAR else POINTS
 
     def between(self, first: _Point, second: _Point) -> list[CriticalPoint]:
-        """Points between two others at which a stiffness vanishes."""
+        """Points between two others at which a stiffness vanishes, in the order of the path."""
         fewest, most = sorted((first.stability.negatives, second.stability.negatives))
         turns = first.direction[-1] * second.direction[-1] < 0.0
-        return [self._zero(first, second, number, turns and most == fewest + 1) for number in range(fewest, most)]
+        # The softest motion loses its stiffness first, and has it again last.
+        numbers = range(fewest, most)[:: 1 if first.stability.negatives == fewest else -1]
+        return [self._zero(first, second, number, turns and most == fewest + 1) for number in numbers]
 
     def _zero(self, first: _Point, second: _Point, number: int, turns: bool) -> CriticalPoint:
         """The point at which an eigenvalue is zero, by steps along the direction of the first point."""
@@ -382,9 +371,9 @@ class _Follower:
         shape = np.zeros_like(point.x)
         shape[: self.n] = point.stability.motions[:, number]
         shape /= shape[np.argmax(np.abs(shape))]
-        kind = "limit" if turns else "branch"
+        kind = LIMIT if turns else BRANCH
         if point.stability.asymmetry > _ASYMMETRY:
-            kind = "symmetric part"
+            kind = SYMMETRIC_PART
         return CriticalPoint(point.load, kind, point.x, shape, gap)
 
 

@@ -28,6 +28,7 @@ _NAMES = {
     "identification.search": "convergence starts",
     "identification.specimens": "specimens",
     "motion.diagnostics": "energies newton violations work_precision",
+    "motion.equilibria": "equilibria equilibrium_path",
     "motion.outputs": "outputs sweep",
 }
 __getattr__, __dir__ = lazy_names(

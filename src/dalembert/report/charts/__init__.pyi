@@ -57,5 +57,7 @@ from dalembert.report.charts.motion.diagnostics import energies as energies
 from dalembert.report.charts.motion.diagnostics import newton as newton
 from dalembert.report.charts.motion.diagnostics import violations as violations
 from dalembert.report.charts.motion.diagnostics import work_precision as work_precision
+from dalembert.report.charts.motion.equilibria import equilibria as equilibria
+from dalembert.report.charts.motion.equilibria import equilibrium_path as equilibrium_path
 from dalembert.report.charts.motion.outputs import outputs as outputs
 from dalembert.report.charts.motion.outputs import sweep as sweep

@@ -53,6 +53,8 @@ class ProgressText:
                 return f"{said} · {_horizon(event)}{self._best_values}", 0, None
             case {"event": "swept", "parameter": name, "value": value, "done": done, "total": total}:
                 return f"{name} = {value:.6g} · {done} of {total}", done, total
+            case {"event": "balanced", "parameter": name, "value": value, "points": points}:
+                return f"{name} = {value:.6g} · {points} equilibria", 0, None
             case {"event": "ran", "method": method, "runs": runs, "failed": failed, "most": most}:
                 return f"{method} · {runs} simulations" + (f", {failed} failed" if failed else ""), runs, most
             case {"event": "sampled", "runs": runs}:

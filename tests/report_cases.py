@@ -12,6 +12,7 @@ from correlated_noise import autoregressive
 from dalembert.data import Bands, Measurements
 from dalembert.forward import Channel, PythonModel
 from dalembert.inverse import Experiment, GlobalSurrogate, design, identifiability, predict, profile
+from dalembert.multibody import Force, PointMass, Spring, System, equilibrium_path
 from dalembert.multibody.spatial import Inertia, Orientation, RigidBody, SpatialSystem, SphericalJoint
 from dalembert.optimize import LeastSquares, Minimiser, ParticleSwarm, ResponseSensitivity
 from dalembert.parameter import Parameter
@@ -317,6 +318,21 @@ def _ball() -> Any:
     return da.simulate(system, end=0.1, solver=da.GeneralizedAlpha(step=2e-3))
 
 
+def _arch() -> Any:
+    """A flat arch of two springs that snaps through."""
+
+    def build(load: float) -> System:
+        system = System(gravity=(0.0, 0.0))
+        apex = system.add(PointMass("apex", mass=1.0, position=(0.0, 0.1)))
+        for name, x in (("left", -1.0), ("right", 1.0)):
+            ground = system.ground.point(x, 0.0)
+            system.add(Spring(name, ground, apex.centre, stiffness=1e4, free_length=1.01**0.5))
+        system.add(Force("push", apex.centre, y=-load))
+        return system
+
+    return equilibrium_path(build, 0.0, 8.0, channels=["apex.centre.y"], parameter="push", unit="N")
+
+
 def _moved_fit() -> tuple[Any, Any]:
     model = _model(lambda a: np.stack([a * TIMES, -TIMES], axis=1), "bar.end.x bar.end.y", a=(0.0, 2.0))
     return da.identify(model, _exact(model, [1.0], noise=0.1)), {"trajectory": _pendulum()}
@@ -336,6 +352,16 @@ def _moved_experiments() -> tuple[Any, Any]:
 
 
 CASES: dict[str, Case] = {
+    "a path of equilibria": Case(
+        _arch,
+        (
+            "with 2 limit points.",
+            "Solid: stable equilibria; dashed: unstable ones.",
+            "The slider goes along the path; faint outlines are equilibria on it.",
+            "equilibria are unstable, the first of them from 3.83022 N on.",
+        ),
+        ("mechanism", "equilibrium-path-1"),
+    ),
     "motion in space": Case(_ball, ("Drag to turn, scroll to zoom.",), ("mechanism",)),
     # ── identification: how it went ─────────────────────────────────────────────────────────────────────────────────
     "exact data": Case(

@@ -77,7 +77,11 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "campbell" if "at" in row:
             diagram: Any = outcome.result
             return float(diagram.frequencies[np.argmin(np.abs(diagram.values - row["at"])), int(quantity[-1]) - 1])
-        case "campbell":
+        case "equilibrium_path" if "at" in row:
+            path: Any = outcome.result
+            number = list(outcome.best["values"]).index(row["at"])
+            return float(path.critical_values[number, path.names.index(quantity)])
+        case "campbell" | "equilibrium_path":
             return outcome.best["values"][quantity]
         case "sweep":
             curve = next(curve for curve in outcome.result.curves if curve.parameter == row["along"])

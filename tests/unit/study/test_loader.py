@@ -289,7 +289,7 @@ horizon = "growin"
                 "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
                 "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [regularise], [global_sensitivity], [identify_bands], [screening], "
                 "[identify_set], [design], [exciting_trajectory], "
-                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes], [campbell]"
+                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes], [campbell], [equilibrium_path]"
             ],
         ),
         (
@@ -298,7 +298,7 @@ horizon = "growin"
                 "study.toml: no task is given; a study has one task, one of "
                 "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [regularise], [global_sensitivity], [identify_bands], [screening], "
                 "[identify_set], [design], [exciting_trajectory], "
-                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes], [campbell]"
+                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes], [campbell], [equilibrium_path]"
             ],
         ),
         (('[solver]\nstep = "1 ms"', ""), ["study.toml: the table [solver] is missing; expected at least its step"]),

@@ -69,6 +69,8 @@ TABLES = {
     "StateTable": ["identify"],
     "SweepTable": ["sweep"],
     "CampbellTable": ["campbell"],
+    "EquilibriumPathTable": ["equilibrium_path"],
+    "LoadRangeTable": ["equilibrium_path"],
     "BoundsTable": ["sweep"],
     "PropagateTable": ["propagate"],
     "IdentifyInertiasTable": ["identify_inertias"],

@@ -218,7 +218,7 @@ class EquilibriumPath(Result):
                 {"points": len(unstable), "load": float(first)},
                 f"{counted(len(unstable))} of {counted(len(self.stable))} equilibria are unstable, the first of them "
                 f"from {self._of(float(first))} on.",
-                "A mechanism does not stay there: under this load it jumps to another equilibrium.",
+                "A mechanism does not stay there: the smallest push moves it to another equilibrium.",
             )
         ]
 
@@ -259,14 +259,20 @@ class EquilibriumPath(Result):
         """What was computed, in a sentence."""
         ends = f"{self._of(float(self.loads[0]))} to {self._of(float(self.loads[-1]))}"
         kinds = [point.name for point in self.critical]
-        counts = [f"{counted(kinds.count(kind))} {kind}{'s' * (kinds.count(kind) > 1)}" for kind in dict.fromkeys(kinds)]
+        counts = [
+            f"{counted(kinds.count(kind))} {kind}{'s' * (kinds.count(kind) > 1)}" for kind in dict.fromkeys(kinds)
+        ]
         critical = ", with " + " and ".join(counts) if counts else ", without critical points"
         return f"{counted(len(self.loads))} equilibria along {self.parameter}, from {ends}{critical}."
 
     def facts(self) -> dict[str, str]:
         few = self.critical[:MOST_FACTS]
         critical = {f"{point.name} {number}": self._of(point.load) for number, point in enumerate(few, start=1)}
-        return {"equilibria": counted(len(self.loads)), "highest load": self._of(float(self.line.loads.max())), **critical}
+        return {
+            "equilibria": counted(len(self.loads)),
+            "highest load": self._of(float(self.line.loads.max())),
+            **critical,
+        }
 
     def tables(self) -> tuple[Table, ...]:
         """Return the critical points, if there are any, and all equilibria."""

@@ -16,9 +16,7 @@ HOW = "Solid: stable equilibria; dashed: unstable ones. Circles: limit points; d
 def equilibrium_path(path: EquilibriumPath, options: ReportOptions) -> list[Section]:
     """Channels over the load, critical points, the mechanism at equilibria, and a table of all of them."""
     plots = [
-        Plot(
-            f"equilibrium-path-{place}", charts.equilibrium_path(path, group, title=", ".join(map(plain, group))), HOW
-        )
+        Plot(f"equilibrium-path-{place}", charts.equilibrium_path(path, group, title=", ".join(map(plain, group))), HOW)
         for place, group in enumerate(by_quantity(path.names), start=1)
     ]
     sections = [headline_of(path), Section("Equilibria over the load", (*plots, *path.tables()))]

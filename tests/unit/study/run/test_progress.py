@@ -37,6 +37,10 @@ def _printed(event: dict, names: tuple[str, ...] = ()) -> str:
         ({"event": "simulating", "end": 2.0}, "simulating to 2 s"),
         ({"event": "run-damaged", "message": "checkpoint is damaged"}, "checkpoint is damaged"),
         (
+            {"event": "balanced", "parameter": "push", "value": 3.8, "points": 7, "stable": True},
+            "push = 3.8 · 7 equilibria",
+        ),
+        (
             {"event": "swept", "parameter": "a", "value": 0.5, "done": 3, "total": 9, "failure": None},
             "a = 0.5 · 3 of 9",
         ),

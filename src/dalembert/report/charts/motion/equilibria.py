@@ -1,6 +1,7 @@
 """Equilibria along a load: channels over the load, and the mechanism along the path."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import plotly.graph_objects as go
@@ -38,8 +39,10 @@ def equilibrium_path(
     for place, (name, column) in enumerate(zip(chosen, columns, strict=True)):
         for number, (first, last) in enumerate(runs(line.stable)):
             x, y = line.loads[first : last + 1], line.values[first : last + 1, column]
-            style = {"line_dash": "solid" if line.stable[first] else "dash", "legendgroup": plain(name)}
-            draw(figure, x, y, plain(name), colour_of(place), showlegend=number == 0, **style)
+            dash, label = "solid" if line.stable[first] else "dash", plain(name)
+            draw(
+                figure, x, y, label, colour_of(place), showlegend=number == 0, line_dash=dash, legendgroup=label
+            )  # fmt: skip
     for kind in dict.fromkeys(point.kind for point in path.critical):
         at = [number for number, point in enumerate(path.critical) if point.kind == kind]
         loads = np.array([path.critical[number].load for number in at])
@@ -79,4 +82,4 @@ def runs(stable: np.ndarray) -> list[tuple[int, int]]:
     [(0, 2), (2, 3), (3, 4)]
     """
     cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(stable)]
-    return list(zip(cuts[:-1], cuts[1:], strict=True))
+    return list(pairwise(cuts))

@@ -358,7 +358,7 @@ CASES: dict[str, Case] = {
             "with 2 limit points.",
             "Solid: stable equilibria; dashed: unstable ones.",
             "The slider goes along the path; faint outlines are equilibria on it.",
-            "equilibria are unstable, the first of them from 3.83022 N on.",
+            "equilibria are unstable, the first of them from 3.82988 N on.",
         ),
         ("mechanism", "equilibrium-path-1"),
     ),

@@ -3,6 +3,8 @@ from dataclasses import replace
 import numpy as np
 
 from dalembert.report import charts
+from dalembert.report.charts.motion.equilibria import runs
+from report_cases import CASES
 from stand_ins import motion, sweep
 
 
@@ -66,3 +68,31 @@ def test_the_unit_of_a_channel_is_given_where_its_name_does_not_tell_it():
     figure = charts.sweep(curve)
     assert figure.layout.yaxis.title.text == "response (V)"
     assert figure.layout.yaxis2.title.text == "derivative (V/rad)"
+
+
+def test_a_path_has_solid_and_dashed_lines_and_its_critical_points():
+    path = CASES["a path of equilibria"].make()
+    figure = charts.equilibrium_path(path)
+    *lines, points = figure.data
+    assert [trace.line.dash for trace in lines] == ["solid", "dash", "solid"]
+    assert [trace.showlegend for trace in lines] == [True, False, False]
+    assert (points.name, points.mode) == ("limit point", "markers")
+    np.testing.assert_allclose(points.x, [point.load for point in path.critical])
+    np.testing.assert_allclose(points.y, path.critical_values[:, 0])
+    assert lines[0].x[-1] == lines[1].x[0] == points.x[0]
+    assert figure.layout.xaxis.title.text == "push (N)"
+    assert figure.layout.yaxis.title.text == "position (m)"
+
+
+def test_the_film_of_a_path_stops_at_its_critical_points():
+    scene = charts.equilibria(CASES["a path of equilibria"].make()).scene
+    assert scene.film.labels[0] == "0 N, stable"
+    assert scene.film.labels[-1] == "8 N, stable"
+    assert "3.82988 N, limit point" in scene.film.labels
+    assert any(label.endswith("unstable") for label in scene.film.labels)
+    assert len(scene.film.labels) == len(scene.times)
+
+
+def test_runs_of_stable_and_unstable_segments():
+    assert runs(np.array([False])) == [(0, 1)]
+    assert runs(np.array([True, False, False])) == [(0, 1), (1, 3)]

@@ -81,6 +81,7 @@ def _balance(kind: Declaration, dtype: type) -> BlockKernel:
         for e in range(count):
             for i in range(coordinates):
                 own_x[i], own_r[i] = x[index[e, i]], r[index[e, i]]
+            # The residual is linear in the multipliers: what it still holds belongs to them.
             balance(own_x, own_r, own_dx)
             for j in range(width - coordinates):
                 x[index[e, coordinates + j]] += own_dx[j]

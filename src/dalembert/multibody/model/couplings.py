@@ -12,7 +12,7 @@ from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.kernels.linear import BAND_KERNELS, DENSE_KERNELS, Layout, band_layout, dense_layout, padded
 
-_SMALL = 90  # unknowns up to which a kept dense inverse is faster than a kept band factorisation
+_SMALL = 56  # unknowns up to which a kept dense inverse is at least as fast as a kept band factorisation
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,8 @@ from dalembert.multibody.integrators.midpoint.lanes_step import (
     lanes_step,
 )
 from dalembert.multibody.integrators.midpoint.midpoint_loop import AGED, WARY
-from dalembert.multibody.integrators.midpoint.midpoint_step import StepRows, begin, begin_by_means, open_means
+from dalembert.multibody.integrators.midpoint.midpoint_step import StepRows
+from dalembert.multibody.integrators.midpoint.prediction import begin, begin_by_means, keep_lanes, open_means
 from dalembert.multibody.integrators.midpoint.symmetries import takes_means
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
@@ -271,7 +272,7 @@ def _advance(problem, pattern, t, target, last, within, tolerance, balance, work
     n, step, stack, h = problem.n, work.step, work.matrices, target - t
     values, s = step.numbers, lane_rows(step.rows)
     start, tried, numbers = lane_state(work.stacks[1]), lane_state(work.stacks[2]), lane_vector(step.numbers)
-    missed, zero = lanes2(address_of(work.slope), 2, len(s.x0)), 0.0 * s.v0[len(s.x0) - 1]
+    missed = lanes2(address_of(work.slope), 2, len(s.x0))
     # The start of the step stays where it is for lanes that try again, and for outputs within the step.
     before = lane_state(work.stacks[0])
     for i in range(len(s.x0)):
@@ -330,24 +331,13 @@ def _advance(problem, pattern, t, target, last, within, tolerance, balance, work
         # The energy that the next step must have: that of the start and the work since.
         energies = lane_vector(balance.numbers)
         energies[ENERGY] = where(arrived, energies[ENERGY] + energies[GAIN], energies[ENERGY])
+        keep_lanes(n, h, last, means, arrived, pending, before, s, missed)
         for i in range(n):
-            start.x[i] = where(arrived, tried.x[i], start.x[i])
             start.v[i] = where(arrived, tried.v[i], start.v[i])
             start.a[i] = where(arrived, tried.a[i], start.a[i])
-            if means:  # `midpoint_step.keep_means`
-                missed[1, i] = where(arrived, 2.0 / (h + last) * (s.vm[i] - missed[0, i]), missed[1, i])
-                missed[0, i] = where(arrived, s.vm[i], missed[0, i])
-            else:
-                missed[0, i] = where(arrived, s.a[i] - before.a[i], where(pending, zero, missed[0, i]))
-                missed[1, i] = where(arrived, s.b[i] - before.a[i], where(pending, zero, missed[1, i]))
             numbers[SPEED] = where(arrived, larger(numbers[SPEED], sizes(s.vm[i]) / problem.scale[i]), numbers[SPEED])
-        for i in range(n, len(s.x0)):
+        for i in range(len(s.x0)):
             start.x[i] = where(arrived, tried.x[i], start.x[i])
-            if means:
-                missed[0, i] = where(arrived, s.xm[i], missed[0, i])
-            else:
-                missed[0, i] = where(arrived, s.x0[i] - before.x[i], where(pending, zero, missed[0, i]))
-                missed[1, i] = where(arrived, s.x1[i] - before.x[i], where(pending, zero, missed[1, i]))
         if not again:
             break
 

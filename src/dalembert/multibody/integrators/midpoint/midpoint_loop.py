@@ -9,6 +9,7 @@ from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.midpoint import energy_balance as balancing
 from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
+from dalembert.multibody.integrators.midpoint import prediction
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance
 from dalembert.multibody.integrators.midpoint.midpoint_step import Along, MidpointStep
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
@@ -129,9 +130,9 @@ def differentiate(
         call_at(middle).step = h if balance.converge_along != 0 else 0.0
         means = midpoint.takes_means(perturbed, middle)
         if means:
-            midpoint.begin_by_means(n, h, last, dold, slopes[d], ds)
+            prediction.begin_by_means(n, h, last, dold, slopes[d], ds)
         else:
-            midpoint.begin(n, h, dold, slopes[d], ds)
+            prediction.begin(n, h, dold, slopes[d], ds)
         if balance.converge_along == 0:
             midpoint.converge_along(problem, matrices, perturbed, h, step, along)
         else:
@@ -139,9 +140,9 @@ def differentiate(
                 balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step, along, balance
             )
         if means:
-            midpoint.keep_means(n, h, last, ds, slopes[d])
+            prediction.keep_means(n, h, last, ds, slopes[d])
         else:
-            midpoint.keep_missed(n, dold, ds, slopes[d])
+            prediction.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
         level = ACCELERATION if means else VELOCITY
         settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, level)
@@ -195,9 +196,9 @@ def integrate(
             _clear(slopes[d])
         before = 0.0
         if means:
-            midpoint.open_means(n, new, slope)
+            prediction.open_means(n, new, slope)
             for d in range(len(models.directions)):
-                midpoint.open_means(n, row(dnews, d), slopes[d])
+                prediction.open_means(n, row(dnews, d), slopes[d])
         last.known[0] = 0
         arrived = True
         while True:
@@ -216,9 +217,9 @@ def integrate(
             h = target - t
             call_at(step.middle).step = h if balance.converge != 0 else 0.0
             if means:
-                midpoint.begin_by_means(n, h, before, new, slope, s)
+                prediction.begin_by_means(n, h, before, new, slope, s)
             else:
-                midpoint.begin(n, h, new, slope, s)
+                prediction.begin(n, h, new, slope, s)
             if stale:
                 state, place, call_at(complex_work).step = new, t, 0.0
                 if means:
@@ -263,13 +264,13 @@ def integrate(
                     return NEWTON_FAILED, t, worst
                 else:
                     level += 1
-                    stale = means
+                    stale = means  # the middle of the shorter step lies elsewhere
                 continue
             # What this prediction missed is added to the next one: a forecast of second order without a stored history.
             if means:
-                midpoint.keep_means(n, h, before, s, slope)
+                prediction.keep_means(n, h, before, s, slope)
             else:
-                midpoint.keep_missed(n, new, s, slope)
+                prediction.keep_missed(n, new, s, slope)
             copy(between, new)
             # The energy that the next step must have: that of the start and the work since.
             energy += gain

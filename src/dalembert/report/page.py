@@ -1,9 +1,11 @@
 """The report: one HTML file that holds all it needs."""
 
 import base64
+import gzip
 import hashlib
 import os
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -71,15 +73,15 @@ def report(
     motions = [plot.figure for section in sections for plot in section.plots if isinstance(plot, Motion)]
     player = player_files(in_space=any(motion.scene.dimensions == 3 for motion in motions))
     script = module((*player, PICTURES, SCRIPT) if motions else [SCRIPT])
-    scripts = [Markup(get_plotlyjs()), Markup(script)]
     look = {"template": template().to_plotly_json(), "dark": exchanged()}
     text = templates.get_template("page.html").render(
         title=sections[0].title,
         sections=sections,
         environment=templates,
         style=Markup(templates.get_template("page.css").render(light=LIGHT, dark=DARK, font=Markup(FONT))),
-        scripts=scripts,
-        policy=_policy(scripts),
+        plotly=_plotly(),
+        script=Markup(script),
+        policy=_policy([get_plotlyjs(), script]),
         look=inline_json(look),
         version=__version__,
     )
@@ -100,7 +102,13 @@ def environment() -> Environment:
     )
 
 
-def _policy(scripts: list[Markup]) -> str:
+@cache
+def _plotly() -> str:
+    """The library of the figures, packed."""
+    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), 4, mtime=0)).decode()
+
+
+def _policy(scripts: list[str]) -> str:
     """Content security policy: nothing from elsewhere, and no script but ours, by their hashes."""
     hashes = " ".join(
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" for script in scripts

@@ -153,3 +153,37 @@ def test_messages() -> None:
 
     with pytest.raises(SolveError, match="no equilibrium was found"):
         mb.equilibrium_path(sinking, 0.0, 1.0)
+
+
+def test_angles_are_counted_along_a_path() -> None:
+    """A lever on a torsion spring turns by more than half a turn."""
+
+    def build(moment: float) -> mb.System:
+        system = mb.System(gravity=(0.0, 0.0))
+        lever = system.add(mb.RigidBar("lever", 1.0, 1.0))
+        system.add(mb.RevoluteJoint("pin", system.ground, lever.start))
+        system.add(mb.TorsionSpring("spring", system.ground, lever.start, 1.0))
+        system.add(mb.Torque("push", lever.start, moment))
+        return system
+
+    path = mb.equilibrium_path(build, 0.0, 6.0, channels=["pin.angle"])
+    np.testing.assert_allclose(path.values[:, 0], path.loads, atol=1e-9)
+
+
+def flat_arch(load: float) -> mb.System:
+    """Two springs with a limit load of 3.83 N."""
+    system = mb.System(gravity=(0.0, 0.0))
+    apex = system.add(mb.PointMass("apex", mass=1.0, position=(0.0, 0.1)))
+    for name, x in (("left", -1.0), ("right", 1.0)):
+        ground = system.ground.point(x, 0.0)
+        system.add(mb.Spring(name, ground, apex.centre, stiffness=1e4, free_length=1.01**0.5))
+    system.add(mb.Force("push", apex.centre, y=-load))
+    return system
+
+
+@pytest.mark.parametrize(("start", "steps"), [(3.0, 20), (3.7, 20), (0.0, 1)])
+def test_a_narrow_range_turns_at_a_limit_point_or_keeps_its_points(start: float, steps: int) -> None:
+    path = mb.equilibrium_path(flat_arch, start, 3.9, steps)
+    assert path.ended in ("away", "lost", "end")
+    assert len(path.loads) > 1
+    assert path.loads.max() == pytest.approx(3.83, abs=0.08)

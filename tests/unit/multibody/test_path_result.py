@@ -108,6 +108,7 @@ def test_unstable_equilibria_are_a_note(path: EquilibriumPath) -> None:
     [
         ({"ended": "points"}, "path-incomplete", "The path ends after 3 points at 2 N, before 2 N."),
         ({"ended": "away"}, "path-incomplete", "The load went away from its end"),
+        ({"ended": "lost"}, "path-incomplete", "No equilibrium was found beyond 2 N: the path stops before 2 N."),
     ],
 )
 def test_a_path_that_ends_early_is_incomplete(changes, code, sentence) -> None:

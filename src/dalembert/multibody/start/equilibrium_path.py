@@ -24,6 +24,7 @@ from dalembert.multibody.start.path_result import (
     BRANCH,
     END,
     LIMIT,
+    LOST,
     POINTS,
     SYMMETRIC_PART,
     Build,
@@ -39,7 +40,7 @@ _DIFFERENCE = 1e-6
 _MOST_ITERATIONS = 12
 _FEW_ITERATIONS = 4
 """Iterations after which a step keeps its length; with fewer it grows, with more it shrinks."""
-_SHORTEST = 1e-4
+_SHORTEST = 1e-6
 """Part of the first step: the path ends where it needs a shorter one."""
 _FAR = 2.0
 """Of the range: a path whose load goes back by more ends."""
@@ -150,11 +151,19 @@ def equilibrium_path(
             on_point(points[-1].load, points[-1].stability.negatives == 0)
         if len(points) >= most_points or ended != POINTS:
             break
-        point, ended = follower.following(points[-1])
+        try:
+            point, ended = follower.following(points[-1])
+        except SolveError:
+            if len(points) == 1:
+                raise
+            ended = LOST
+            break
         critical += [replace(found, after=len(points) - 1) for found in follower.between(points[-1], point)]
         points.append(point)
     loads, x = np.array([point.load for point in points]), np.array([point.x for point in points])
     critical_x = np.array([point.x for point in critical]).reshape(-1, x.shape[1])
+    values = observed(build, names, loads, x)
+    nearest = values[[point.after for point in critical]]
     return EquilibriumPath(
         loads,
         np.array([point.stability.negatives == 0 for point in points]),
@@ -166,8 +175,8 @@ def equilibrium_path(
         unit,
         tuple(names),
         units,
-        observed(build, names, loads, x),
-        observed(build, names, np.array([point.load for point in critical]), critical_x),
+        values,
+        observed(build, names, np.array([point.load for point in critical]), critical_x, nearest),
         build,
     )
 

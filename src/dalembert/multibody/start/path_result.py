@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Build = Callable[[float], BaseSystem]
 LIMIT, BRANCH, SYMMETRIC_PART = "limit", "branch", "symmetric part"
-END, POINTS, AWAY = "end", "points", "away"
+END, POINTS, AWAY, LOST = "end", "points", "away", "lost"
 MOST_FACTS = 3
 """Critical loads among the facts."""
 
@@ -59,7 +59,7 @@ class CriticalPoint:
     @property
     def name(self) -> str:
         """The kind in words."""
-        return self.kind if self.kind == SYMMETRIC_PART else f"{self.kind} point"
+        return "symmetric-part point" if self.kind == SYMMETRIC_PART else f"{self.kind} point"
 
 
 class PathLine(NamedTuple):
@@ -89,9 +89,9 @@ class EquilibriumPath(Result):
         In the order of the path.
     x : array, shape (points, N + 1)
         States, as of an :class:`Equilibrium`.
-    ended : {"end", "points", "away"}
+    ended : {"end", "points", "away", "lost"}
         Why the path ends: the load reached ``end``; there are ``most_points``; the load went away from ``end`` by more
-        than twice the range.
+        than twice the range; no equilibrium was found beyond the last one.
     end : float
         The load that the path was to reach.
     parameter, unit : str
@@ -201,6 +201,9 @@ class EquilibriumPath(Result):
         elif self.ended == AWAY:
             sentence = f"The load went away from its end: the path stops at {self._of(last)} and does not reach "
             advice = "Choose an end below the critical load, or begin at a load from which the path leads there."
+        elif self.ended == LOST:
+            sentence = f"No equilibrium was found beyond {self._of(last)}: the path stops before "
+            advice = "Another path may cross it there. Take a wider range or more steps, or add an imperfection."
         else:
             return []
         return [Finding("path-incomplete", "warning", values, f"{sentence}{self._of(self.end)}.", advice)]
@@ -270,7 +273,7 @@ class EquilibriumPath(Result):
         critical = {f"{point.name} {number}": self._of(point.load) for number, point in enumerate(few, start=1)}
         return {
             "equilibria": counted(len(self.loads)),
-            "highest load": self._of(float(self.line.loads.max())),
+            "largest load": self._of(float(max(self.line.loads, key=abs))),
             **critical,
         }
 
@@ -329,14 +332,27 @@ class EquilibriumPath(Result):
         return f"{shown(load)} {self.unit}".rstrip()
 
 
-def observed(build: Build, names: Sequence[str], loads: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return values of channels at equilibria (points, N + 1), each of the system at its load, (points, channels)."""
+def observed(
+    build: Build, names: Sequence[str], loads: np.ndarray, x: np.ndarray, near: np.ndarray | None = None
+) -> np.ndarray:
+    """Return values of channels at equilibria (points, N + 1), each of the system at its load, (points, channels).
+
+    Angles have the whole turns that bring them next to those of the point before, or next to ``near`` (points,
+    channels).
+    """
     values = np.zeros((len(loads), len(names)))
+    angles: list[int] = []
     for row, load in enumerate(loads if names else ()):
         system, still = build(float(load)), np.zeros((1, x.shape[1]))
         lowered = lower(system)
         readers = observer(system, lowered, names)
+        angles = [column for column, own in enumerate(readers.rows) if own.angle is not None]
         values[row] = readers.read(lowered, lowered.real, (x[row][None], still, still), np.zeros(1))[0]
+    if near is None:
+        values[:, angles] = np.unwrap(values[:, angles], axis=0)
+    else:
+        turn = 2.0 * np.pi
+        values[:, angles] += turn * np.round((near[:, angles] - values[:, angles]) / turn)
     return values
 
 

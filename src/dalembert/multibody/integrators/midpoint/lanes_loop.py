@@ -53,7 +53,7 @@ from dalembert.multibody.integrators.shared.matrices import (
     scratch,
     weigh_masses,
 )
-from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, IntegrationProblem
+from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem
 from dalembert.multibody.integrators.shared.settling_lanes import FAILED, settle_lanes
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import addresses
@@ -309,11 +309,14 @@ def _advance(problem, pattern, t, target, last, within, tolerance, balance, work
         # Settled, the end of the step fulfils the constraints to rounding at the level of velocities.
         settle_lanes(
             problem, step.masses, step.rigid, step.model, tried, work.moved, step.buffer, step.end,
-            ACCELERATION if means else VELOCITY, work.least, work.settled,
+            VELOCITY, work.least, work.settled,
         )  # fmt: skip
         again = False
         for lane in range(WIDTH):
             values[ARRIVED, lane] = work.least[lane] - work.settled[FAILED, lane]
+            # What settles as a mechanism at rest does is decided where the sample runs alone.
+            if work.settled[FAILED, lane] == 1.0:
+                step.alone[lane], values[PENDING, lane] = 1, 0.0
             failed = values[PENDING, lane] == 1.0 and values[ARRIVED, lane] == 0.0
             # With matrices of this place only a shorter step helps, which the other lanes do not take.
             if failed and stack.is_fresh[lane] == 1:

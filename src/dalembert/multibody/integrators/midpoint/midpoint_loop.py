@@ -25,7 +25,6 @@ from dalembert.multibody.integrators.shared.matrices import (
 )
 from dalembert.multibody.integrators.shared.outputs import Outputs, outputs, record
 from dalembert.multibody.integrators.shared.problem import (
-    ACCELERATION,
     DONE,
     NEWTON_FAILED,
     SINGULAR,
@@ -144,8 +143,7 @@ def differentiate(
         else:
             prediction.keep_missed(n, dold, ds, slopes[d])
         _read(n, ds, dnew)
-        level = ACCELERATION if means else VELOCITY
-        settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, level)
+        settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, VELOCITY)
 
 
 _balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
@@ -251,8 +249,7 @@ def integrate(
                 _read(n, s, between)
                 # The end of the step fulfils the constraints to the tolerance of Newton; settled, to rounding, at the
                 # level of velocities, so that nothing drifts.
-                settled = ACCELERATION if means else VELOCITY
-                converged = settle(problem, matrices, models.real, between, moved, step.end, settled)
+                converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITY)
             if not converged:
                 counts[3] += 1
                 h, arrived = 0.0, False

@@ -10,8 +10,8 @@ with q_m and l_m the means of both ends. Newton's iteration takes the difference
 cancel: so one matrix of the implicit midpoint rule and one projection do.
 
 Methods that keep the energy take the constraint forces J(q_m)^T l_m in space, where constraints are quadratic in the
-coordinates: J(q_m) (q_1 - q_0) is what they change in the step, so that these forces do no work. Then a = b, and
-velocities satisfy the constraints in the middle of the step.
+coordinates: J(q_m) (q_1 - q_0) is what they change in the step, so that these forces do no work. Then a = b. Velocities
+satisfy the constraints in the middle of the step, and are moved onto them at its end.
 """
 
 from typing import NamedTuple

@@ -10,18 +10,16 @@ from dalembert.multibody.kernels.kind import Kind
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
 
-_PLANES = {2: [(0, 1)], 3: [(1, 2), (2, 0), (0, 1)]}
-"""Of the rotations that there are, as pairs of axes: the first turns to the second."""
 _VECTORS = ("position", "director", "gradient")
 
 
 def takes_means(structure: Structure) -> bool:
-    """Whether a step that keeps the energy takes constraint forces of its middle, and mean forces: in space.
+    """Whether a step that keeps the energy takes mean forces, and constraint forces of its middle.
 
-    There constraints are quadratic in the coordinates, but for angles of rotors, which have rates of their own.
+    So do mechanisms with components that have mean forces: beams and cables in space. Constraints are quadratic in the
+    coordinates there, but for angles of rotors, which have rates of their own.
     """
-    in_space = bool(structure.reduction.nodes) or any(kind.has("mean") for kind in structure.index)
-    return in_space and "rotor" not in structure.kinds
+    return any(kind.has("mean") for kind in structure.index) and "rotor" not in structure.kinds
 
 
 def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> FreeRigidMotions:
@@ -29,7 +27,7 @@ def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> FreeRigidMo
 
     Without any hold, those are the translations across gravity, and the rotations about axes along gravity: all without
     gravity, one in the plane. Pins, rods and springs at points of the ground leave the rotations about an axis through
-    all of them. What else may be free (along a slide) is not looked for. In space axes are those of the coordinates.
+    all of them. What else may be free (along a slide) is not looked for.
     """
     kinds = np.array(lowered.structure.kinds)
     held, points = _held(lowered)
@@ -37,7 +35,8 @@ def rigid_motions(lowered: Lowered, perturbed: Sequence[Lowered]) -> FreeRigidMo
     frees = not held and len(points) == 0
     translations = [axis for axis in range(lowered.dimension) if frees and not weighs[axis]]
     spread = np.ptp(np.real(points), axis=0) != 0.0 if len(points) else np.zeros(lowered.dimension, bool)
-    turns = [plane for plane in _PLANES[lowered.dimension] if not held and not np.any((weighs | spread)[list(plane)])]
+    # In space what projected velocities lose can only be balanced by a force against rotations, too.
+    turns = [(0, 1)] if lowered.dimension == 2 and not held and not np.any(weighs | spread) else []
     partner = np.tile(np.arange(len(kinds)), (len(translations) + len(turns), 1))
     sign = np.zeros(partner.shape)
     vectors = np.flatnonzero(np.isin(kinds, _VECTORS))

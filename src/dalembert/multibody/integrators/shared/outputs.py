@@ -65,11 +65,17 @@ def record(
         interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
         # The interpolated state is near the constraints, so that kept matrices correct it unless they are from far
         # away.
-        if far and not renew(problem, matrices, models.tangents, False, t, within, state, scratch.complex_work):
-            return False
-        set_signals(models.real, t, within, scratch.work)
-        if not settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION):
-            return False
+        settled = False
+        if not far:
+            set_signals(models.real, t, within, scratch.work)
+            settled = settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION)
+        if not settled:
+            interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
+            if not renew(problem, matrices, models.tangents, False, t, within, state, scratch.complex_work):
+                return False
+            set_signals(models.real, t, within, scratch.work)
+            if not settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION):
+                return False
     write(state, row(out, due))
     count_turns(models.turns, t, state, due)
     if len(models.directions) > 0:

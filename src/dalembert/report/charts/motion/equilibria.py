@@ -6,6 +6,8 @@ from itertools import pairwise
 import numpy as np
 import plotly.graph_objects as go
 
+from dalembert.argument_readers import names_of
+from dalembert.errors import require_known
 from dalembert.multibody import EquilibriumPath
 from dalembert.quantities import common, quantity
 from dalembert.report.charts.drawing import colour_of, draw
@@ -34,7 +36,9 @@ def equilibrium_path(
     plotly.graph_objects.Figure
     """
     figure, line = go.Figure(), path.line
-    chosen = path.names if channels is None else tuple(channels)
+    chosen = path.names if channels is None else names_of(channels, "equilibrium_path", "channels")
+    for name in chosen:
+        require_known("channel", name, path.names)
     columns = [path.names.index(name) for name in chosen]
     for place, (name, column) in enumerate(zip(chosen, columns, strict=True)):
         for number, (first, last) in enumerate(runs(line.stable)):

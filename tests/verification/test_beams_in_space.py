@@ -210,6 +210,38 @@ def test_rotating_beam(record_evidence):
     )  # fmt: skip
 
 
+def test_whirl_of_a_shaft(record_evidence):
+    """A thick shaft turns between a hub with a universal joint and a sliding bearing.
+
+    With u = U sin(k x) and rotations R cos(k x) in the fixed frame, a Timoshenko shaft has det = 0 of
+    [-rho A w^2 + G A k^2, -G A k; -G A k, E I k^2 + G A - rho I w^2 + 2 rho I speed w].
+    """
+    speed, radius, density, e = 2000.0, 0.05, 7800.0, 2e11
+    area, moment = np.pi * radius**2, np.pi * radius**4 / 4
+    stretch, shear, bending = e * area, 0.9 * e / 2.6 * area, e * moment
+    mass, inertia = density * area, density * moment
+    section = Section((stretch, shear, shear, 2 * e / 2.6 * moment, bending, bending), mass, (inertia, inertia))
+    system, spin = SpatialSystem(gravity=(0.0, 0.0, 0.0)), (speed, 0.0, 0.0)
+    hub = system.add(sp.RigidBody("hub", sp.Inertia.box(1e-3, (0.1, 0.1, 0.1)), angular_velocity=spin))
+    shaft = system.add(Beam("shaft", section, 1.0, 4, 4, angular_velocity=spin))
+    system.add(sp.RevoluteJoint("bearing", system.ground, hub.point("origin"), axis=(1.0, 0.0, 0.0)))
+    axes = {"axis_a": (0.0, 1.0, 0.0), "axis_b": (0.0, 0.0, 1.0)}
+    system.add(sp.UniversalJoint("left", hub.point("origin"), shaft.start, **axes))
+    end = system.ground.point((1.0, 0.0, 0.0))
+    system.add(sp.PointOnLineJoint("right", end, shaft.end, axis=(1.0, 0.0, 0.0)))
+    frequencies = 2 * np.pi * mb.modes(system, frame="rotating").frequencies
+    expected = []
+    for k in (np.pi, 2 * np.pi):
+        row = [-inertia, 2 * inertia * speed, bending * k * k + shear]
+        whirl = np.polysub(np.polymul([-mass, 0.0, shear * k * k], row), [(shear * k) ** 2])
+        expected += sorted(abs(root.real - speed) for root in np.roots(whirl) if abs(root) < 1e4)
+    found = [frequencies[np.argmin(np.abs(frequencies - one))] for one in expected]
+    record_evidence(
+        "Whirl of a shaft at 2000 rad/s: forward and backward, two modes, in the rotating frame", expected, found,
+        unit="rad/s", tolerance=1e-5, relative=True, topic=TOPIC, kind="closed form", source="rotating Timoshenko shaft",
+    )  # fmt: skip
+
+
 def test_elbow_in_motion(record_evidence):
     """An elbow of two beams, pushed out of its plane for two seconds, swings by more than its length."""
     section = Section((1e6, 1e6, 1e6, 1e3, 1e3, 1e3), 1.0, (10.0, 10.0))

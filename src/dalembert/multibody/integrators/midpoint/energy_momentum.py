@@ -42,9 +42,9 @@ class EnergyMomentum(Variational):
     are satisfied to rounding.
 
     Mechanisms with beams or cables in space have mean forces of both ends of a step, and the constraint forces of its
-    middle. Such forces do no work of their own, so that slender and damped beams need no shorter steps. The energy that
-    velocities lose where they are moved onto the constraints is balanced by c. It is of the order h^4 in a step, and so
-    is the change of the angular momentum. Mechanisms with armature inertias in space take the step of
+    middle. Such forces neither take nor give energy, so that slender and damped beams need no shorter steps. The energy
+    that velocities lose where they are moved onto the constraints is balanced by c. It is of the order h^4 in a step,
+    and so is the change of the angular momentum. Mechanisms with armature inertias in space take the step of
     :class:`Variational`.
 
     Parameters

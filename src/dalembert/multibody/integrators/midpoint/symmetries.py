@@ -17,7 +17,7 @@ def takes_means(structure: Structure) -> bool:
     """Whether a step that keeps the energy takes mean forces, and constraint forces of its middle.
 
     So do mechanisms with components that have mean forces: beams and cables in space. Constraints are quadratic in the
-    coordinates there, but for angles of rotors, which have rates of their own.
+    coordinates there, but for angles of rotors.
     """
     return any(kind.has("mean") for kind in structure.index) and "rotor" not in structure.kinds
 

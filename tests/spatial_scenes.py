@@ -7,6 +7,7 @@ import numpy as np
 
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
+from dalembert.parameter import Parameter
 from dalembert.structure import FreeBodyModes
 
 AXIS = (0.3, 0.2, 1.0)
@@ -514,4 +515,12 @@ def fields_of(fields: dict, numbers: dict) -> dict:
     return {
         name: tuple(numbers[f"{name}_{axis}"] for axis in "xyz") if isinstance(value, tuple) else numbers[name]
         for name, value in fields.items()
+    }
+
+
+def parameters_of(fields: dict) -> dict[str, Parameter]:
+    """Parameters of a scene: each number within a half of itself, with its size as the scale."""
+    return {
+        name: Parameter(name, value - abs(value) / 2, value + abs(value) / 2, scale=abs(value))
+        for name, value in numbers_of(fields).items()
     }

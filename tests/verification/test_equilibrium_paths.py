@@ -5,6 +5,7 @@ import pytest
 
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
+from flat_arch import flat_arch
 
 TOPIC = "Equilibria along a load"
 FREE = (0.0, 0.0, 0.0)
@@ -22,19 +23,10 @@ def critical(build, start: float, end: float) -> tuple[list[str], list[float]]:
 
 
 def test_a_flat_arch_of_two_springs_snaps_through(record_evidence) -> None:
-    def arch(load: float) -> mb.System:
-        system = mb.System(gravity=(0.0, 0.0))
-        apex = system.add(mb.PointMass("apex", mass=1.0, position=(0.0, 0.1)))
-        for name, x in (("left", -1.0), ("right", 1.0)):
-            ground = system.ground.point(x, 0.0)
-            system.add(mb.Spring(name, ground, apex.centre, stiffness=1e4, free_length=1.01**0.5))
-        system.add(mb.Force("push", apex.centre, y=-load))
-        return system
-
     # F = 2 k (L0 - L) y / L with L^2 = 1 + y^2 is largest where L^3 = L0.
     longest, length = 1.01**0.5, 1.01 ** (1 / 6)
     load = 2e4 * (longest - length) * np.sqrt(length**2 - 1) / length
-    path = mb.equilibrium_path(arch, 0.0, 10.0)
+    path = mb.equilibrium_path(flat_arch, 0.0, 10.0)
     assert [point.kind for point in path.critical] == ["limit", "limit"]
     record_evidence(
         "Limit loads of a flat arch of two springs", [load, -load], [point.load for point in path.critical], unit="N",

@@ -8,10 +8,9 @@ import dalembert.multibody as mb
 from adjoint_differences import difference
 from dalembert.errors import InputError
 from dalembert.forward import prefers_adjoint
-from dalembert.parameter import Parameter
 from nodal_kinds import top
 from refusals import refused
-from spatial_scenes import SCENES, fields_of, numbers_of
+from spatial_scenes import SCENES, fields_of, parameters_of
 
 TIMES = np.array([0.0, 0.02, 0.043, 0.08])
 SHORT = mb.GeneralizedAlpha(2.5e-3, newton_tolerance=1e-18)
@@ -21,10 +20,7 @@ QUICK = ("rigid body", "beam", "revolute", "prescribed angle", "gear")
 def response(scene: str, solver: mb.GeneralizedAlpha = SHORT) -> mb.TimeResponse:
     """A scene as a function of all of its numbers."""
     build, fields = SCENES[scene]
-    parameters = {
-        name: Parameter(name, value - abs(value) / 2, value + abs(value) / 2, scale=abs(value))
-        for name, value in numbers_of(fields).items()
-    }
+    parameters = parameters_of(fields)
     system = build(**fields)
     names = [
         f"{body.name}.{body.point_names[-1]}.{entry}"

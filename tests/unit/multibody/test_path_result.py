@@ -8,22 +8,12 @@ import pytest
 import dalembert.multibody as mb
 from dalembert.errors import InputError
 from dalembert.multibody import CriticalPoint, EquilibriumPath
-
-
-def arch(load: float) -> mb.System:
-    """A flat arch of two springs, pushed down at its apex."""
-    system = mb.System(gravity=(0.0, 0.0))
-    apex = system.add(mb.PointMass("apex", mass=1.0, position=(0.0, 0.1)))
-    for name, x in (("left", -1.0), ("right", 1.0)):
-        ground = system.ground.point(x, 0.0)
-        system.add(mb.Spring(name, ground, apex.centre, stiffness=1e4, free_length=1.01**0.5))
-    system.add(mb.Force("push", apex.centre, y=-load))
-    return system
+from flat_arch import flat_arch
 
 
 @pytest.fixture(scope="module")
 def path() -> EquilibriumPath:
-    return mb.equilibrium_path(arch, 0.0, 10.0, channels=["apex.centre.y"], parameter="push", unit="N")
+    return mb.equilibrium_path(flat_arch, 0.0, 10.0, channels=["apex.centre.y"], parameter="push", unit="N")
 
 
 def made(stable: list[bool], critical: list[tuple[float, int]], **changes: object) -> EquilibriumPath:
@@ -127,7 +117,7 @@ def test_critical_points_that_are_not_exact_are_doubted() -> None:
 
 def test_a_listener_gets_each_point_and_an_unknown_channel_is_refused_first() -> None:
     seen: list[tuple[float, bool]] = []
-    path = mb.equilibrium_path(arch, 0.0, 3.0, on_point=lambda load, stable: seen.append((load, stable)))
+    path = mb.equilibrium_path(flat_arch, 0.0, 3.0, on_point=lambda load, stable: seen.append((load, stable)))
     assert [load for load, _ in seen] == path.loads.tolist()
     with pytest.raises(InputError, match=r"unknown channel 'apex\.x'"):
-        mb.equilibrium_path(arch, 0.0, 3.0, channels=["apex.x"])
+        mb.equilibrium_path(flat_arch, 0.0, 3.0, channels=["apex.x"])

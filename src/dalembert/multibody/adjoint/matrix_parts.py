@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.multibody.integrators.generalized_alpha.adjoint_sweep import (
-    Balance,
+    InternalMultipliers,
     ResidualDerivatives,
     SweepWorkspace,
     fixed_masses,
@@ -24,7 +24,7 @@ from dalembert.multibody.model.lowered import Lowered
 
 @dataclass(frozen=True, eq=False)
 class Matrices:
-    """Parts of the matrix of a step, with what keeps their slots and the call of the balance alive."""
+    """Parts of the matrix of a step, with what keeps their slots and a call alive."""
 
     scratch: SweepWorkspace
     couplings: tuple[Couplings, ...]
@@ -59,8 +59,8 @@ def matrices_of(lowered: Lowered, work: int, tangent_work: int, state: MotionSta
     call, real = lowered.real.call(), lowered.real.need("residual")
     nodes = [(kind.kernel("balance", float).address, real.block(numbers[kind])) for kind in structure.reduction.nodes]
     table = np.array(nodes, dtype=np.int64).reshape(len(nodes), 2)
-    balance = Balance(real.address, call.address, table, np.zeros(structure.size + 1))
-    scratch = sweep_workspace(structure.full.fresh[1], structure.size + 1, work, tangent_work, parts, balance)
+    multipliers = InternalMultipliers(real.address, call.address, table, np.zeros(structure.size + 1))
+    scratch = sweep_workspace(structure.full.fresh[1], structure.size + 1, work, tangent_work, parts, multipliers)
     fixed_masses(lowered.tangents.address, structure.n, state.x, state.v, state.a, fixed, scratch)
     return Matrices(scratch, tuple(kept), call)
 

@@ -54,6 +54,15 @@ class Structure:
         return reduction(self.index, self.n, self.size)
 
     @cached_property
+    def takes_means(self) -> bool:
+        """Whether a step that keeps the energy takes mean forces, and constraint forces of its middle.
+
+        So it does with components that have mean forces: beams and cables in space. Constraints are quadratic in the
+        coordinates there, but for angles of rotors.
+        """
+        return any(kind.has("mean") for kind in self.index) and "rotor" not in self.kinds
+
+    @cached_property
     def reduced(self) -> Couplings:
         """The system in increments, without internal constraints; the full one of a model that has none."""
         return Couplings(self.reduction.index, self.reduction.size) if self.reduction.nodes else self.full

@@ -7,7 +7,7 @@
   const hovering = matchMedia("(hover: hover)").matches;
   let printing = false;
 
-  async function plotly() { // packed: the file is a third of its size
+  async function plotly() { // packed, the library takes less than half the room
     if (!window.DecompressionStream) document.getElementById("old-browser").hidden = false;
     const packed = Uint8Array.from(atob(document.getElementById("plotly").textContent), (letter) => letter.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));

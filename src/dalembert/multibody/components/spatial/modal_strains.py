@@ -51,10 +51,10 @@ def largest_principal(strains: np.ndarray) -> np.ndarray:
     """
     normal, shear = strains[..., :3], strains[..., 3:]
     mean = normal.mean(axis=-1)
-    own = normal - mean[..., None]
-    size = np.sqrt(((own**2).sum(axis=-1) + 2 * (shear**2).sum(axis=-1)) / 6)
-    determinant = own.prod(axis=-1) + 2 * shear.prod(axis=-1) - (own * shear**2).sum(axis=-1)
-    # The cube of what is smaller is no number of full accuracy.
+    deviator = normal - mean[..., None]
+    size = np.sqrt(((deviator**2).sum(axis=-1) + 2 * (shear**2).sum(axis=-1)) / 6)
+    determinant = deviator.prod(axis=-1) + 2 * shear.prod(axis=-1) - (deviator * shear**2).sum(axis=-1)
+    # Smaller sizes have a cube that underflows.
     cosine = np.divide(determinant, 2 * size**3, out=np.ones_like(size), where=size > 1e-90)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / 3
     ends = [np.abs(mean + 2 * size * np.cos(angle + turn)) for turn in (0.0, 2 * np.pi / 3)]

@@ -130,8 +130,8 @@ class Shape(Checked):
                 return None
             corners, triangles = mesh[0] * np.real(self.sizes), mesh[1]
         else:
-            own = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
-            corners, triangles = own.corners, own.triangles
+            solid = {BOX: _box, CYLINDER: _cylinder, SPHERE: _sphere}[self.kind](*np.real(self.sizes))
+            corners, triangles = solid.corners, solid.triangles
         axes = np.real(self.pose.orientation.matrix)
         return Surface(corners @ axes.T + np.real(self.pose.position), triangles)
 

@@ -71,7 +71,7 @@ class ResidualDerivatives(NamedTuple):
     values: Reals
 
 
-class Balance(NamedTuple):
+class InternalMultipliers(NamedTuple):
     """What finds the multipliers of internal constraints: a model in real numbers, and a call. ``nodes`` (kinds, 2) are
     the kernel of each kind of nodes, and its block. ``r`` is the residual.
     """
@@ -87,7 +87,7 @@ class SweepWorkspace(NamedTuple):
     with its transposed solution, parts of it, vectors.
     ``masses`` are those that do not change, in the places of the matrix. ``by_x``, ``by_v`` and ``by_a`` are the parts
     along coordinates, velocities (of blocks that depend on them), and accelerations (of blocks whose masses vary).
-    ``balance`` finds the multipliers of internal constraints.
+    ``multipliers`` finds those of internal constraints.
     """
 
     work: Address
@@ -103,12 +103,12 @@ class SweepWorkspace(NamedTuple):
     of_q: Reals
     of_v: Reals
     past: MotionState
-    balance: Balance
+    multipliers: InternalMultipliers
 
 
 def sweep_workspace(
     layout: Layout, width: int, work: int, tangent_work: int,
-    parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives], balance: Balance,
+    parts: tuple[ResidualDerivatives, ResidualDerivatives, ResidualDerivatives], multipliers: InternalMultipliers,
 ) -> SweepWorkspace:  # fmt: skip
     """Workspace for a sweep over vectors of ``width``; its masses are zero, and filled before the sweep. ``work``,
     ``tangent_work``: addresses of calls; ``parts``: derivatives of the residual by q, v and a.
@@ -117,7 +117,7 @@ def sweep_workspace(
     factors = storage(layout)
     return SweepWorkspace(
         work, tangent_work, factors, transposed(layout).address, np.zeros(len(factors.matrix)), *parts, right, mu,
-        of_q, of_v, MotionState(*past), balance,
+        of_q, of_v, MotionState(*past), multipliers,
     )  # fmt: skip
 
 
@@ -207,7 +207,7 @@ def _take_samples(n, h, k, given, left, bar, past):
 
 
 @inlined
-def _balance(n, t, within, x, v, a, own):
+def _fill_multipliers(n, t, within, x, v, a, own):
     """Give the multipliers of internal constraints their values, which a step of the reduced system leaves open."""
     # The step solves N^T r = 0 beside the internal constraints G. That is r + G^T l = 0 with multipliers l: the step of
     # the full system, whose derivatives hold G^T l differentiated by q.
@@ -273,7 +273,7 @@ def sweep(
         clear(past.v)
         clear(past.a)
         left = _take_samples(n, c.step, first + k, given, left, bar, past)
-        _balance(n, steps.ends[k], steps.sides[k], x, v, a, scratch.balance)
+        _fill_multipliers(n, steps.ends[k], steps.sides[k], x, v, a, scratch.multipliers)
         set_signals(tangent_model, steps.ends[k], steps.sides[k], scratch.tangent_work)
         _fill_matrix(tangent_model, n, c, x, v, a, scratch)
         if not factorise(layout, scratch.factors):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers2, Reals, Reals2
+from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers, Reals, Reals2
 from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
 from dalembert.multibody.integrators.midpoint.midpoint_step import Along, MidpointStep
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
@@ -31,13 +31,14 @@ _STRONGEST = 0.5  # part of the velocities that the force may take or give in a 
 
 
 class FreeRigidMotions(NamedTuple):
-    """Rigid motions that are free, as velocities sign x[partner] + shift of the coordinates. ``partner``, ``sign`` and
-    ``shift`` (motions, n), ``shifts`` (directions, motions, n): the last with the imaginary step along the directions
-    of differentiation.
+    """Rigid motions that are free, as velocities ``spin`` sign x[partner] + shift of the coordinates. ``partner`` and
+    ``sign`` (n,), ``spin`` (motions,), ``shift`` (motions, n), ``shifts`` (directions, motions, n): the same with the
+    imaginary step along the directions of differentiation.
     """
 
-    partner: Integers2
-    sign: Reals2
+    partner: Integers
+    sign: Reals
+    spin: Reals
     shift: Reals2
     shifts: Complexes3
 
@@ -64,9 +65,9 @@ class Balance(NamedTuple):
 def balance_workspace(width: int, rigid: FreeRigidMotions | None = None) -> Balance:
     """Workspace for the balance of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
     addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
-    flat = np.zeros((0, 0))
-    own = rigid or FreeRigidMotions(np.zeros((0, 0), np.int64), flat, flat, np.zeros((0, 0, 0), complex))
-    motions, complex_motions = np.zeros((2, len(own.sign), width)), np.zeros((2, len(own.sign), width), complex)
+    none = np.zeros(0)
+    own = rigid or FreeRigidMotions(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
+    motions, complex_motions = np.zeros((2, len(own.spin), width)), np.zeros((2, len(own.spin), width), complex)
     return Balance(
         own, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_motions[0], complex_motions[1],
         np.zeros(width, complex), np.zeros(3, complex), *addresses,
@@ -92,9 +93,9 @@ def _energy_at_start(model: BlockModel, x: np.ndarray, v: np.ndarray, within: fl
 
 @inner
 def _fill_motions(n, rigid, shift, x, motions):
-    for j in range(len(rigid.sign)):
+    for j in range(len(rigid.spin)):
         for i in range(n):
-            motions[j, i] = rigid.sign[j, i] * x[rigid.partner[j, i]] + shift[j, i]
+            motions[j, i] = rigid.spin[j] * rigid.sign[i] * x[rigid.partner[i]] + shift[j, i]
 
 
 @inner

@@ -17,7 +17,7 @@ from dalembert.multibody.integrators.midpoint.energy_balance import (
 )
 from dalembert.multibody.integrators.midpoint.lanes_balance import balance_lanes
 from dalembert.multibody.integrators.midpoint.lanes_loop import run_in_lanes
-from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions, takes_means
+from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions
 from dalembert.multibody.integrators.midpoint.variational import Variational
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.kernels.histories import energy_history
@@ -82,7 +82,7 @@ class EnergyMomentum(Variational):
 
     def _damped(self, lowered: Lowered) -> bool:
         """Whether the forces of a step depend on its velocities: mean forces do, through both ends."""
-        return lowered.dissipates or takes_means(lowered.structure)
+        return lowered.dissipates or lowered.structure.takes_means
 
     def _run_in_lanes(self, part: Batch) -> tuple[MotionState, np.ndarray]:
         """States of a group, and which samples have to run alone: all, if they do not share their rigid motions."""
@@ -91,7 +91,7 @@ class EnergyMomentum(Variational):
             within = 0.5 * (part.problem.edges[number, 0] + part.problem.edges[number, 1])
             energy, _, balance = self._balance(lowered, (), row(part.states, number), part.dstates, within)
             balances.append((energy, balance.rigid))
-        if any(not np.array_equal(rigid.sign, balances[0][1].sign) for _, rigid in balances):
+        if any(not np.array_equal(rigid.spin, balances[0][1].spin) for _, rigid in balances):
             return resting(len(balances), *part.shape), np.ones(len(balances), dtype=bool)
         return run_in_lanes(part, float(self.step), float(self.newton_tolerance), self._damped, balances)
 
@@ -99,7 +99,7 @@ class EnergyMomentum(Variational):
         self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
     ) -> tuple[float, np.ndarray, Balance]:
         """Energy at the start with its derivatives, and the force that keeps it."""
-        means = takes_means(lowered.structure)
+        means = lowered.structure.takes_means
         for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
             model.need("energy").averaged(means)
         lowered.tangents.averaged(means)

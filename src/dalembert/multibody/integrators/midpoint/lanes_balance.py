@@ -8,7 +8,7 @@ import numpy as np
 from dalembert.kernels.kernel import kernel
 from dalembert.kernels.lanes import WIDTH, entry, lane_vector, lane_zeros, lanes2
 from dalembert.kernels.views import address_of
-from dalembert.kernels.words import Address, Integers2, Reals, Reals2, Reals3
+from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3
 from dalembert.multibody.integrators.midpoint.energy_balance import (
     MOST_STRENGTHS,
     FreeRigidMotions,
@@ -36,8 +36,9 @@ ENERGY, GAIN, STRENGTH, EXCESS, SEARCHES, IS_FREE, WANTED, HAS_ARRIVED, FIRST_RA
 class LaneMotions(NamedTuple):
     """Rigid motions of lanes: as of `energy_balance.FreeRigidMotions`, with ``shift`` (motions, N + 1, 8)."""
 
-    partner: Integers2
-    sign: Reals2
+    partner: Integers
+    sign: Reals
+    spin: Reals
     shift: Reals3
 
 
@@ -68,14 +69,14 @@ def lanes_balance(width: int, motions: Sequence[FreeRigidMotions], energies: Seq
     # Without balance the kernel of the balance is not even compiled.
     if not motions:
         none, stack = lane_zeros(0), lane_zeros(0, width)
-        rigid = LaneMotions(np.zeros((0, 0), np.int64), np.zeros((0, 0)), stack)
+        rigid = LaneMotions(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), stack)
         return LanesBalance(LaneDirection(rigid, stack, stack, none), none, lane_zeros(9), 0)
-    first, count = motions[0], len(motions[0].sign)
+    first, count = motions[0], len(motions[0].spin)
     shift, numbers = lane_zeros(count, width), lane_zeros(9)
     numbers[ENERGY] = energies
     for lane, own in enumerate(motions):
-        shift[:, : own.shift.shape[1], lane] = own.shift
-    rigid = LaneMotions(first.partner, first.sign, shift)
+        shift[:, : len(first.partner), lane] = own.shift
+    rigid = LaneMotions(first.partner, first.sign, first.spin, shift)
     direction = LaneDirection(rigid, lane_zeros(count, width), lane_zeros(count, width), lane_zeros(width))
     return LanesBalance(direction, lane_zeros(3), numbers, balance_lanes.address)
 
@@ -88,7 +89,9 @@ def balance_lanes(
     n, s, values, own, width = problem.n, lane_rows(step.rows), balance.numbers, balance.direction, step.rows.shape[1]
     numbers, totals, push = lane_vector(values), lane_vector(balance.totals), lane_vector(step.push)
     count = own.motions.shape[0]
-    rigid = LaneMotions(own.rigid.partner, own.rigid.sign, lanes2(address_of(own.rigid.shift), count, width))
+    rigid = LaneMotions(
+        own.rigid.partner, own.rigid.sign, own.rigid.spin, lanes2(address_of(own.rigid.shift), count, width)
+    )
     direction = LaneDirection(
         rigid, lanes2(address_of(own.motions), count, width), lanes2(address_of(own.weighed), count, width),
         lane_vector(own.force),

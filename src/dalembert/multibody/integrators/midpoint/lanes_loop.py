@@ -28,9 +28,8 @@ from dalembert.multibody.integrators.midpoint.lanes_step import (
     lanes_step,
 )
 from dalembert.multibody.integrators.midpoint.midpoint_loop import AGED, WARY
-from dalembert.multibody.integrators.midpoint.midpoint_step import StepRows
+from dalembert.multibody.integrators.midpoint.midpoint_step import StepRows, has_means
 from dalembert.multibody.integrators.midpoint.prediction import begin, begin_by_means, keep_lanes, open_means
-from dalembert.multibody.integrators.midpoint.symmetries import takes_means
 from dalembert.multibody.integrators.shared.batch import Batch
 from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
 from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_ends, weigh_ends
@@ -59,7 +58,7 @@ from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import addresses
 from dalembert.multibody.kernels.elementary import where
 from dalembert.multibody.kernels.linear import Factors
-from dalembert.multibody.kernels.records import call_at, model_at
+from dalembert.multibody.kernels.records import call_at
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, resting, row, rows
 from dalembert.multibody.model.lane_models import lane_model
 from dalembert.multibody.model.lowered import Lowered
@@ -129,7 +128,7 @@ def run_in_lanes(
     roles = ("residual", "rates", "energy") if balances else ("residual", "rates")
     together = lane_model(samples, *roles)
     if balances:
-        together.averaged(takes_means(samples[0].structure))
+        together.averaged(samples[0].structure.takes_means)
     energies = [balances[number][0] for number in filled] if balances else []
     motions = [balances[number][1] for number in filled] if balances else []
     middle, end, call = together.call(), together.call(), models[0].call()
@@ -277,7 +276,7 @@ def _advance(problem, pattern, t, target, last, within, tolerance, balance, work
     before = lane_state(work.stacks[0])
     for i in range(len(s.x0)):
         before.x[i], before.v[i], before.a[i] = start.x[i], start.v[i], start.a[i]
-    means = balance.converge != 0 and model_at(step.model).middle != step.model
+    means = balance.converge != 0 and has_means(step.model)
     for lane in range(WIDTH):
         values[PENDING, lane] = 1.0 - step.alone[lane]
         stack.is_fresh[lane] = 0
@@ -372,7 +371,7 @@ def integrate_lanes(
             work.matrices.is_stale[lane], work.matrices.wary[lane] = 1, 0
         for i in range(width):
             slope[0, i] = slope[1, i] = 0.0
-        if balance.converge != 0 and model_at(own.model).middle != own.model:
+        if balance.converge != 0 and has_means(own.model):
             open_means(problem.n, lane_state(work.stacks[1]), slope)
         work.last.times[1], h, last = t, 0.0, 0.0
         for number in range(steps + 1):

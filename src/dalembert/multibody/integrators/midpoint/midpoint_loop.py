@@ -37,7 +37,7 @@ from dalembert.multibody.integrators.shared.problem import (
 from dalembert.multibody.integrators.shared.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import Call
-from dalembert.multibody.kernels.records import call_at, model_at
+from dalembert.multibody.kernels.records import call_at
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, resting, row
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -174,7 +174,7 @@ def integrate(
     energy, due = settings.energy, 0
     strength, gain = 0.0, 0.0
     speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
-    means = balance.converge != 0 and model_at(models.real).middle != models.real
+    means = balance.converge != 0 and midpoint.has_means(models.real)
     for stretch in range(len(edges) - 1):
         t, end = edges[stretch], edges[stretch + 1]
         within = 0.5 * (t + end)

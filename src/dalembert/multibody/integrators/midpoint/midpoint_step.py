@@ -122,9 +122,15 @@ def place(n, h, s):
 
 
 @inlined
+def has_means(model):
+    """Whether a model has a middle with mean forces, see `BlockModel.averaged`."""
+    return model_at(model).middle != model
+
+
+@inlined
 def takes_means(model, middle):
-    """Whether constraint forces are those of the middle of a step, see `BlockModel.averaged`."""
-    return call_at(middle).step != 0.0 and model_at(model).middle != model
+    """Whether constraint forces are those of the middle of a step, whose length a method that keeps the energy sets."""
+    return call_at(middle).step != 0.0 and has_means(model)
 
 
 @inner

@@ -49,7 +49,7 @@ def record(
 ) -> bool:  # fmt: skip
     """Write the state at an output time in the last step or at its end: on the constraints, with its accelerations.
 
-    Matrices that are from ``far`` are renewed between the ends.
+    Matrices that are from ``far``, or that do not serve, are renewed between the ends.
     """
     ends, state = scratch.last, scratch.between
     newest = oldest = len(ends.times) - 1
@@ -62,20 +62,18 @@ def record(
     else:
         oldest = support(ends)
         weigh_ends(ends, oldest, t, scratch.weights)
-        interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
         # The interpolated state is near the constraints, so that kept matrices correct it unless they are from far
-        # away.
-        settled = False
-        if not far:
+        # away, or fail.
+        fresh, settled = far, False
+        while not settled:
+            interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
+            if fresh and not renew(problem, matrices, models.tangents, False, t, within, state, scratch.complex_work):
+                return False
             set_signals(models.real, t, within, scratch.work)
             settled = settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION)
-        if not settled:
-            interpolate_ends(problem.n, oldest, scratch.weights, ends.states, state)
-            if not renew(problem, matrices, models.tangents, False, t, within, state, scratch.complex_work):
+            if fresh and not settled:
                 return False
-            set_signals(models.real, t, within, scratch.work)
-            if not settle(problem, matrices, models.real, state, scratch.moved, scratch.work, POSITION):
-                return False
+            fresh = True
     write(state, row(out, due))
     count_turns(models.turns, t, state, due)
     if len(models.directions) > 0:

@@ -8,9 +8,8 @@ import pytest
 import dalembert.multibody as mb
 import dalembert.multibody.spatial as sp
 from dalembert.multibody.model.lowering import lower
-from dalembert.parameter import Parameter
 from slopes import errors
-from spatial_scenes import SCENES, fields_of, numbers_of
+from spatial_scenes import SCENES, fields_of, numbers_of, parameters_of
 
 TIMES = np.array([0.0, 0.02, 0.05, 0.08])
 STEPS = mb.RungeKutta4(step=1e-2)
@@ -36,10 +35,7 @@ def response(build, fields: dict) -> mb.TimeResponse:
     def builder(**numbers) -> sp.SpatialSystem:
         return build(**fields_of(fields, numbers))
 
-    parameters = {
-        name: Parameter(name, value - abs(value) / 2, value + abs(value) / 2, scale=abs(value))
-        for name, value in numbers_of(fields).items()
-    }
+    parameters = parameters_of(fields)
     system = build(**fields)
     names = [
         f"{body.name}.{body.point_names[-1]}.{entry}"

@@ -58,7 +58,7 @@ class Sliders:
             self._reset = button("Reset", self._reset_values, icon="restart_alt", colour="grey-8")
             self._choice = ui.select([""], value="", label="Experiment", on_change=self._take_choice)
             self._choice.props("dense outlined")
-            self._told = ui.label("").classes("break-words text-sm grow basis-60").props("role=status")
+            self._status = ui.label("").classes("break-words text-sm grow basis-60").props("role=status")
             self._busy = ui.row().classes("items-center gap-2")
             with self._busy:
                 ui.spinner(size="sm")
@@ -230,7 +230,7 @@ class Sliders:
 
     def _show(self, result: Simulated, received: float) -> None:
         self._show_problem("")
-        self._told.set_text(result.hint or self._facts(result))
+        self._status.set_text(result.hint or self._facts(result))
         self._scene.set_visibility(result.film is not None)
         if result.film is not None:
             times_shown = {"received": received, "simulated": result.seconds, "computed": result.computed}

@@ -21,7 +21,6 @@ from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import (
     AnnotateTypes,
-    InlineOverloads,
     IRLegalization,
     NativeLowering,
     NoPythonBackend,
@@ -45,11 +44,13 @@ from dalembert.kernels.powers import IntegerPowers
 arrayobj: Any = _arrayobj
 lowering: Any = _lowering
 typeinfer: Any = _typeinfer
-# `IntegerPowers` comes before types are inferred, so that its products are typed and compiled like all others.
+# Numba's `InlineOverloads` is left out: it removes dead code, and takes writes through a field of a tuple, as of
+# `state.x[0]`, for dead. `IntegerPowers` comes before types are inferred, so that its products are typed like all
+# others.
 _PASSES = (
     TranslateByteCode, FixupArgs, IRProcessing, IntegerPowers, RewriteSemanticConstants, DeadBranchPrune,
-    GenericRewrites, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, InlineOverloads, IRLegalization,
-    AnnotateTypes, NativeLowering, NoPythonBackend,
+    GenericRewrites, ReconstructSSA, NopythonTypeInference, PreLowerStripPhis, IRLegalization, AnnotateTypes,
+    NativeLowering, NoPythonBackend,
 )  # fmt: skip
 
 

@@ -2,21 +2,43 @@
 
 import tomllib
 from pathlib import Path
+from typing import NamedTuple
 
 import numba
+import numpy as np
 import pytest
 
 from dalembert.kernels.pipeline import PIPELINE, TRIED, NumbaPasses, Pipeline, is_tried
+from dalembert.multibody.kernels.elementary import size_of
 
 
 def cube(x):
     return x**3
 
 
+class Box(NamedTuple):
+    """A tuple with an array."""
+
+    values: np.ndarray
+
+
+def write(out):
+    box = Box(out)
+    box.values[0] = size_of(out[1])
+
+
 @pytest.mark.parametrize("passes", [Pipeline, NumbaPasses])
 def test_a_power_keeps_the_complex_step_with_both_lists_of_passes(passes):
     compiled = numba.njit(pipeline_class=passes)(cube)
     assert compiled(complex(-0.7, 1e-30)).imag == pytest.approx(3 * 0.49e-30, rel=1e-15)
+
+
+@pytest.mark.parametrize("passes", [Pipeline, NumbaPasses])
+def test_a_write_through_a_field_of_a_tuple_stays(passes):
+    # Numba removes it in functions into which it writes an overload with `inline="always"`.
+    out = np.array([0.0, -1.5])
+    numba.njit(pipeline_class=passes)(write)(out)
+    assert out[0] == 1.5
 
 
 def test_the_installed_version_was_tried():

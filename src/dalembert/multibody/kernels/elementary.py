@@ -38,7 +38,7 @@ def real(x):
     return x.real
 
 
-@overload(real, inline="always")
+@overload(real)
 def _real(x):
     if not isinstance(x, types.Number | DualType | LanesType):
         return None
@@ -65,7 +65,7 @@ def is_any(condition):
     return condition
 
 
-@overload(is_any, inline="always")
+@overload(is_any)
 def _is_any(condition):
     return (lambda condition: any_lane(condition)) if isinstance(condition, MaskType) else lambda condition: condition
 
@@ -78,7 +78,7 @@ def is_zero(number):
     return number == 0.0
 
 
-@overload(is_zero, inline="always")
+@overload(is_zero)
 def _is_zero(number):
     if isinstance(number, LanesType):
         return lambda number: first_is_zero(number)
@@ -90,7 +90,7 @@ def size_of(x):
     return abs(x.real)
 
 
-@overload(size_of, inline="always")
+@overload(size_of)
 def _size(x):
     return (lambda x: sizes(x)) if isinstance(x, LanesType) else lambda x: abs(x.real)
 
@@ -100,7 +100,7 @@ def chained(x, value, slope):
     return complex(value, slope * x.imag)
 
 
-@overload(chained, inline="always")
+@overload(chained)
 def _chained(x, value, slope):
     if isinstance(x, DualType):
         return lambda x, value, slope: chained_dual(x, value, slope)

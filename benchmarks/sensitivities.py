@@ -4,6 +4,7 @@ import numba
 import numpy as np
 
 import dalembert as da
+import dalembert.multibody as mb
 from benchmarks import ours, timing
 from benchmarks.cases import PENDULUM
 
@@ -24,18 +25,22 @@ def main() -> list[dict[str, object]]:
     numba.set_num_threads(1)  # so that a run and its sensitivities have the same means
     rows = [_row("2 + 4 beams", ours.beam_pendulum, BEAM, count) for count in (1, 2, 4, 8)]
     rows += [_row("2 + 4 cables", ours.cable_pendulum, CABLE, count) for count in (1, 2, 4)]
+    step = PENDULUM.integration.step
+    for solver in (mb.Variational(step), mb.EnergyMomentum(step), mb.RadauIIA(1e-6)):
+        name = f"2 + 4 beams, {type(solver).__name__}"
+        rows += [_row(name, ours.beam_pendulum, BEAM, count, solver) for count in (1, 3, 8)]
     timing.report("sensitivities", "Response and p exact sensitivities, in forward runs (one core)", rows)
     return rows
 
 
-def _row(name: str, builder, values: dict[str, float], count: int) -> dict[str, object]:
+def _row(name: str, builder, values: dict[str, float], count: int, solver=None) -> dict[str, object]:
     chosen = dict(list(values.items())[:count])
     model = da.TimeResponse(
         builder,
         parameters={key: (0.9 * value, 1.1 * value) for key, value in chosen.items()},
         channels=ours.JOINT_AND_TIP,
         times=PENDULUM.integration.times,
-        solver=ours.solver(PENDULUM.integration),
+        solver=solver or ours.solver(PENDULUM.integration),
     )
     vector = np.array(list(chosen.values()))
     times = timing.interleaved(

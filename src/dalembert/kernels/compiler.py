@@ -121,8 +121,11 @@ def _compiled_only(*_: Any) -> Any:
     raise NotImplementedError
 
 
-def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> Callable:
-    """A function of one address: of the words of the arguments; it writes the words of the result after them."""
+def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any, first: tuple[Any, ...] = ()) -> Callable:
+    """A function of one address: of the words of the arguments; it writes the words of the result after them.
+
+    ``first`` is empty, or a function whose value the other one takes before these arguments.
+    """
     kinds = types.Tuple([numba_type(annotation) for annotation in arguments])
     behind = sum(map(count, arguments))
 
@@ -153,7 +156,11 @@ def entry_point(function: Callable, arguments: tuple[Any, ...], result: Any) -> 
     def entry(address):
         store(address, function(*load(address)))
 
-    return entry
+    def entry_of_first(address):
+        store(address, function(other(), *load(address)))
+
+    other: Any = first[0] if first else None
+    return entry_of_first if first else entry
 
 
 def caller(handle: Any, symbol: str | None, arguments: tuple[Any, ...], result: Any) -> None:

@@ -247,6 +247,12 @@ def with_slopes(typingctx, value, slopes):
 
 
 @intrinsic(without_python)
+def dual_zero(typingctx):
+    """Return zero."""
+    return DUAL(), lambda context, builder, signature, arguments: context.get_constant_null(DUAL)
+
+
+@intrinsic(without_python)
 def slopes_of(typingctx, x):
     """Return the eight derivatives of a dual number, as lanes."""
     return LANES(x), lambda context, builder, signature, arguments: _parts(context, builder, arguments[0])[1]

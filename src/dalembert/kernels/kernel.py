@@ -156,20 +156,20 @@ class Indirect:
 
 
 class Kernel(Compiled):
-    """A C function of one address: that of the words of its arguments, see :mod:`dalembert.kernels.words`."""
+    """A C function of one address: that of the words of its arguments, see :mod:`dalembert.kernels.words`.
 
-    def __init__(self, function: Callable) -> None:
+    The first argument of the Python function may be the value of another one, ``first``, that is compiled into it.
+    """
+
+    def __init__(self, function: Callable, first: Any = None) -> None:
         hints = get_type_hints(function, include_extras=True)
-        self.function = function
+        self.function, self._first = function, () if first is None else (first,)
         self.__name__, self.__doc__ = function.__name__, function.__doc__
-        self.symbol = (
-            f"dal_{function.__module__.removeprefix('dalembert.').replace('.', '_')}_{function.__name__}".replace(
-                "__", "_"
-            )
-        )
+        words = function.__module__.removeprefix("dalembert."), function.__name__, getattr(first, "__name__", "")
+        self.symbol = "_".join(("dal", *words)).rstrip("_").replace(".", "_").replace("__", "_")
         result = hints.pop("return", None)
         self._result = None if result is type(None) else result
-        names = list(inspect.signature(function).parameters)
+        names = list(inspect.signature(function).parameters)[len(self._first) :]
         self._arguments = tuple(hints[name] for name in names)
         # One layout for both directions: words of the arguments, then of the result, at least one of them.
         given, answer = "".join(map(form, self._arguments)), "" if self._result is None else form(self._result)
@@ -183,7 +183,7 @@ class Kernel(Compiled):
 
     @property
     def entry(self) -> tuple[Callable, str, int]:
-        return entry_point(self.inner, self._arguments, self._result), self.symbol, 1
+        return entry_point(self.inner, self._arguments, self._result, self._first), self.symbol, 1
 
     @property
     def abi(self) -> str:
@@ -195,7 +195,7 @@ class Kernel(Compiled):
 
     @cached_property
     def digest(self) -> str:
-        return digest(self.function, self._layout)
+        return digest(self.function, self._layout + "".join(digest(other.py_func) for other in self._first))
 
     @cached_property
     def _entry(self) -> Any:

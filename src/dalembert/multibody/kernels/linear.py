@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, kernel
+from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.kernels.vector import LANES, add_multiple, add_two_multiples
 
@@ -33,7 +34,10 @@ class Layout(NamedTuple):
 
 
 class Factors(NamedTuple):
-    """A matrix (flat, by columns) that its factorisation overwrites; pivots, first row of each column, a vector."""
+    """A matrix (flat, by columns) that its factorisation overwrites; pivots, first row of each column.
+
+    ``buffer`` is workspace of solutions: a vector of N + 3 reach numbers, or of as many lanes.
+    """
 
     matrix: Reals
     pivots: Integers
@@ -49,8 +53,8 @@ def padded(count: int) -> int:
 def storage(layout: Layout) -> Factors:
     """Room for a matrix and its factorisation."""
     size = layout.size
-    whole = np.zeros(size, np.int64)
-    return Factors(np.zeros(layout.lead * size), whole, np.zeros(size, np.int64), np.zeros(size + 3 * layout.reach))
+    buffer = np.zeros(WIDTH * (size + 3 * layout.reach))
+    return Factors(np.zeros(layout.lead * size), np.zeros(size, np.int64), np.zeros(size, np.int64), buffer)
 
 
 @inlined
@@ -219,7 +223,7 @@ def solve_band(layout: Layout, factors: Factors, given: Reals, answer: Reals) ->
     above = 2 * reach  # room before the first unknown, and behind the last one
     for i in range(size):
         x[above + order[i]] = given[i]
-    for i in range(above + size, len(x)):
+    for i in range(above + size, above + size + reach):
         x[i] = 0.0
     k = 0
     while k < size:

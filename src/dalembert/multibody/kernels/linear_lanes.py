@@ -1,19 +1,39 @@
 """Solutions of one factorised system for eight right-hand sides at once, side by side as lanes."""
 
-from dalembert.kernels.kernel import inlined, kernel
-from dalembert.kernels.lanes import add_column, lane_vector
+from numba.extending import overload
+
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.lanes import LANES, add_column, lane_vector, lanes
+from dalembert.kernels.views import address_of
 from dalembert.kernels.words import Reals2
-from dalembert.multibody.kernels.linear import DENSE, Factors, Layout
+from dalembert.multibody.kernels.linear import DENSE, Factors, Layout, solve
 
 
 @kernel
-def solve_lanes(layout: Layout, factors: Factors, given: Reals2, buffer: Reals2, answer: Reals2) -> None:
-    """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``; ``buffer`` (N + 3 reach, 8)."""
-    right, left = lane_vector(given), lane_vector(answer)
+def solve_lanes(layout: Layout, factors: Factors, given: Reals2, answer: Reals2) -> None:
+    """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``."""
+    _solve(layout, factors, lane_vector(given), lane_vector(answer))
+
+
+@inner
+def _solve(layout, factors, given, answer):
     if layout.kind == DENSE:
-        _multiply(factors.matrix, layout.size, layout.lead, right, left)
+        _multiply(factors.matrix, layout.size, layout.lead, given, answer)
     else:
-        _substitute(layout, factors, right, lane_vector(buffer), left)
+        buffer = lanes(address_of(factors.buffer), layout.size + 3 * layout.reach)
+        _substitute(layout, factors, given, buffer, answer)
+
+
+def solve_slopes(layout, factors, given, answer):
+    """Solve for the first N entries of ``given``, which are real numbers or lanes, into those of ``answer``."""
+    (_solve if given.ndim > 1 else solve)(layout, factors, given, answer)
+
+
+@overload(solve_slopes)
+def _solve_slopes(layout, factors, given, answer):
+    if given.dtype is LANES:
+        return lambda layout, factors, given, answer: _solve(layout, factors, given, answer)
+    return lambda layout, factors, given, answer: solve(layout, factors, given, answer)
 
 
 @inlined

@@ -9,7 +9,6 @@ import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner
 from dalembert.kernels.words import Reals, Reals2, Reals3
-from dalembert.multibody.kernels.elementary import STEP
 
 
 class MotionState(NamedTuple):
@@ -71,17 +70,6 @@ def copy(source, target):
     """Copy one state into another."""
     for i in range(len(source.x)):
         target.x[i], target.v[i], target.a[i], target.w[i] = source.x[i], source.v[i], source.a[i], source.w[i]
-
-
-@inner
-def perturb(n, state, direction, target):
-    """Complex state: the real one plus the imaginary step along a direction."""
-    for i in range(len(state.x)):
-        # A step of 1e-30: its square is below the smallest number that could change a real part.
-        target[0, i] = complex(state.x[i], STEP * direction.x[i])
-    for i in range(n):
-        target[1, i] = complex(state.v[i], STEP * direction.v[i])
-        target[2, i] = complex(state.a[i], STEP * direction.a[i])
 
 
 @inlined

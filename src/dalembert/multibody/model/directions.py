@@ -29,6 +29,16 @@ def dual_kernels(sample: Lowered) -> list[Compiled]:
     return [*sample.kernels(Dual), *nodes, *[RESTORE[Dual]] * bool(nodes), solve_lanes]
 
 
+def is_dual(models: Sequence[BlockModel]) -> bool:
+    """Return whether models along directions are in dual numbers."""
+    return bool(models) and models[0].dtype is Dual
+
+
+def widest(tangents: BlockModel, models: Sequence[BlockModel]) -> BlockModel:
+    """Return that of the model with tangents and those along directions whose calls serve all."""
+    return models[0] if is_dual(models) else tangents
+
+
 def dual_models(sample: Lowered, perturbed: Sequence[Lowered]) -> list[BlockModel]:
     """Return models of a sample along its directions, eight in each, in their order."""
     firsts = range(0, len(perturbed), DIRECTIONS)

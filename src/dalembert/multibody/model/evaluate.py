@@ -130,7 +130,7 @@ def energy_kernels(lowered: Lowered, derivatives: bool) -> list[Compiled]:
 
 def energies(model: BlockModel, x: np.ndarray, v: np.ndarray, times: np.ndarray, within: np.ndarray) -> np.ndarray:
     """Kinetic energy, potential energy, power of what is not conservative, (samples, 3)."""
-    totals, call = np.zeros((len(times), 3), dtype=x.dtype), model.need("energy").call()
+    totals, call = np.zeros((len(times), 3, *x.shape[2:]), dtype=x.dtype), model.need("energy").call()
     x, v = np.ascontiguousarray(x), np.ascontiguousarray(v)
     energy_history(
         model.address, call.address, x.ctypes.data, v.ctypes.data, x.strides[0], times, within, totals.ctypes.data,

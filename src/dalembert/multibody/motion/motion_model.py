@@ -14,6 +14,7 @@ from dalembert.forward.adjoint import Pull
 from dalembert.forward.builders import built, inexact, restructured
 from dalembert.forward.complex_steps import Compared
 from dalembert.forward.differences import COMPLEX_STEP, central_differences
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.preparation import prepare
 from dalembert.multibody.integrators.shared.integrator import Integrator
@@ -207,7 +208,8 @@ class BuiltModel(MotionModel):
         solver = self.solver.suiting(self.shared, float(self.times[-1]))
         together = solver.takes_duals and are_many(self.shared, len(self.parameters))
         kernels = dual_kernels(self.shared) if together else self.shared.kernels(complex)
-        prepare([*solver.kernels(self.shared.structure, True), *kernels, *self.observer.kernels(self.shared, True)])
+        own = solver.kernels(self.shared.structure, Dual if together else complex)
+        prepare([*own, *kernels, *self.observer.kernels(self.shared, True)])
         return self.solver
 
     def lanes_of(self, samples: int) -> int:

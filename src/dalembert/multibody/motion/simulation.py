@@ -153,7 +153,7 @@ def prepared(
 ) -> tuple[Lowered, Integrator]:
     """Return the assembled mechanism and the integrator that suits it, compiled and checked; with its channels."""
     placed = lower(system, begin)
-    kernels = [*placed.kernels(), *solver.suiting(placed, end).kernels(placed.structure, False)]
+    kernels = [*placed.kernels(), *solver.suiting(placed, end).kernels(placed.structure)]
     prepare([*kernels, *(readers.kernels(placed, False) if readers else turn_kernels(counted_angles(placed)))])
     lowered = assembled(system, placed=placed)
     refuse_unstable_start(system, lowered)

@@ -113,13 +113,13 @@ class Collocation(Integrator):
         """Order in the step."""
         return 2 * (self.degree - 1) if self.gauss_points == self.degree - 1 else self.degree
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """The loop, or the parts that a search calls, with what differentiates a state by the unknown accelerations."""
         own = [march] if isinstance(self.minimiser, GaussNewton) else [begin, measure, squares, finish]
         roles = "residual", "rates"
         rates = [kind.kernel(role, complex) for role in roles for kind in structure.index if role in kind.roles]
         linear = [*structure.full.linear_kernels, *DENSE_KERNELS]
-        return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * derivatives]
+        return [*own, settle_along, *rates, *linear, *[respond, accelerate_along] * (derivatives is not None)]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples, one after the other; see `Integrator`.

@@ -13,6 +13,7 @@ from dalembert.multibody.integrators.shared.partitioning import settle
 from dalembert.multibody.integrators.shared.problem import ACCELERATION, IntegrationProblem, SampleModels
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
 from dalembert.multibody.kernels.linear import factorise, solve
+from dalembert.multibody.kernels.slopes import one
 from dalembert.multibody.kernels.states import row, subtract
 
 
@@ -41,10 +42,11 @@ def _drive(problem, model, tangent_model, t, within, state, linear, constraints,
 @inner
 def _drive_along(problem, directions, t, within, state, dstates, c):
     """Derivatives of what `_drive` has found, by the matrix that it left."""
+    numbers, slopes = one(c.slopes)
     for d in range(len(dstates.x)):
         set_signals(directions[d], t, within, c.complex_work)
         for _ in range(2):
-            differentiate_acceleration(problem, directions[d], state, row(dstates, d), c)
+            differentiate_acceleration(problem, directions[d], state, row(dstates, d), c, numbers, slopes)
 
 
 @inner
@@ -86,7 +88,7 @@ def measure(
     place(columns, h, rule.nodes[s], shape, walk.old, walk.c, state)
     _perturb(columns, h, rule.nodes[s], shape, len(walk.c), walk.dold, dstates)
     if not settle(
-        problem, models, t, within, ACCELERATION, state, dstates, c.work, c.complex_work, c.complex_state, own
+        problem, models, t, within, ACCELERATION, state, dstates, c.work, c.complex_work, one(c.slopes)[0], own
     ):
         return False
     # First the accelerations by the polynomial, with the dependent ones by the constraints; then those by the equations

@@ -29,6 +29,7 @@ from dalembert.multibody.integrators.shared.problem import (
 )
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import Call
+from dalembert.multibody.kernels.slopes import one
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, copy, resting, row, rows
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -228,7 +229,7 @@ def _reach(problem, rule, models, step, walk, share):
         place(columns, h, share, shape, dold, walk.dc[d], dnew)
     # Dependent coordinates and velocities by the constraints, then accelerations and multipliers by the equations of
     # motion: outputs satisfy all levels.
-    if not settle(problem, models, t, step.within, VELOCITY, new, dnews, c.work, c.complex_work, c.complex_state, own):
+    if not settle(problem, models, t, step.within, VELOCITY, new, dnews, c.work, c.complex_work, one(c.slopes)[0], own):
         return NEWTON_FAILED
     return DONE if accelerate(problem, models, t, step.within, new, dnews, c) else SINGULAR
 

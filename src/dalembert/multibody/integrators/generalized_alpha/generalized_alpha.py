@@ -9,26 +9,27 @@ import numpy as np
 
 from dalembert.arguments import limited
 from dalembert.errors import require_known
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import Compiled, inlined, inner, kernel
-from dalembert.kernels.words import Address, Integers, Integers2, Reals2
+from dalembert.kernels.words import Integers, Integers2, Reals2
 from dalembert.multibody.integrators.generalized_alpha.derivatives import (
     Differentiation,
     differentiate,
+    differentiate_together,
     differentiation,
+    gather,
+    scatter,
 )
 from dalembert.multibody.integrators.generalized_alpha.lanes_run import integrate_lanes, run_in_lanes
 from dalembert.multibody.integrators.generalized_alpha.newton import Newton, converge, keep_slope, newton
-from dalembert.multibody.integrators.generalized_alpha.together import (
-    Together,
-    accelerate_together,
-    differentiate_together,
-    gather,
-    nothing_together,
-    scatter,
-    together,
-)
 from dalembert.multibody.integrators.shared.batch import Batch, restarts
-from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, accelerate_along, consistency
+from dalembert.multibody.integrators.shared.consistent import (
+    Consistency,
+    accelerate,
+    accelerate_along,
+    accelerate_together,
+    consistency,
+)
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.lane_groups import run_groups
@@ -58,7 +59,7 @@ from dalembert.multibody.kernels.states import (
     row,
     rows,
 )
-from dalembert.multibody.model.directions import are_many, dual_models
+from dalembert.multibody.model.directions import is_dual, widest
 from dalembert.multibody.model.lane_models import lane_kernels, lane_node_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
@@ -123,18 +124,20 @@ class GeneralizedAlpha(Integrator):
 
     @property
     def takes_duals(self) -> bool:
-        """Whether derivatives along many directions may be dual numbers: not where velocities are projected."""
-        return self.spectral_radius < 1.0
+        """Whether derivatives along many directions may be dual numbers."""
+        return True
 
     @property
     def fixed_step(self) -> float | None:
         """The step in s, None if adaptive."""
         return None if self.adaptive else self.step
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""
-        along = [differentiate, accelerate_along] * derivatives
-        return [integrate, *structure.full.linear_kernels, *structure.reduced_kernels(derivatives), *along]
+        eight = derivatives is Dual
+        along = [differentiate_together, accelerate_together] if eight else [differentiate, accelerate_along]
+        reduced = structure.reduced_kernels(derivatives is not None)
+        return [integrate, *structure.full.linear_kernels, *reduced, *along * (derivatives is not None)]
 
     def lane_kernels(self, sample: Lowered) -> list[Compiled]:
         """The loop for samples side by side, its solutions, and what components need."""
@@ -170,17 +173,13 @@ class GeneralizedAlpha(Integrator):
         ends = np.zeros((len(samples), 3))
         real = [entry.real.need("rates").reduced() for entry in samples]
         tangent_models = [entry.tangents.reduced(spreads=len(perturbed) > 0) for entry in samples]
-        many = bool(perturbed) and self.takes_duals and are_many(samples[0], len(perturbed))
-        groups = [entry.need("rates").reduced() for entry in dual_models(samples[0], perturbed)] if many else []
-        one_by_one = [] if many else [entry.complex_model.need("rates").reduced() for entry in perturbed]
-        directions = addresses(one_by_one)
-        call, tangent_call = real[0].call(), tangent_models[0].call()
-        dual_call = groups[0].call() if many else tangent_call
-        works = call.address, tangent_call.address
-        along = together(problem, groups, dual_call.address, tangent_call.address) if many else nothing_together()
+        directions = [entry.reduced() for entry in batch.directions(takes_duals=self.takes_duals)]
+        call, along_call = real[0].call(), widest(tangent_models[0], directions).call()
+        groups = len(directions), is_dual(directions)
+        scratch = _workspace(problem, call.address, along_call.address, len(perturbed), *groups)
         integrate(
-            problem, opens, settings, addresses(real), addresses(tangent_models), directions, turns, batch.states,
-            batch.dstates, out, dout, log, ends, _workspace(problem, *works, len(perturbed), along),
+            problem, opens, settings, addresses(real), addresses(tangent_models), addresses(directions), turns,
+            batch.states, batch.dstates, out, dout, log, ends, scratch,
         )  # fmt: skip
         runs, shortened = [], f"the step of {self.step:g} s was cut down {'' if self.adaptive else 'to 1/256 '}for it"
         for number, (lowered, (status, time, moved)) in enumerate(zip(samples, ends, strict=True)):
@@ -203,10 +202,7 @@ class AlphaSettings(NamedTuple):
 
 
 class AlphaWorkspace(NamedTuple):
-    """States of a step, Newton's iteration, consistent accelerations, derivatives.
-
-    ``differentiate``: address of the kernel for the derivatives of a step, 0 if there are none.
-    """
+    """States of a step, Newton's iteration, consistent accelerations, derivatives."""
 
     old: MotionState
     new: MotionState
@@ -214,21 +210,16 @@ class AlphaWorkspace(NamedTuple):
     newton: Newton
     consistency: Consistency
     differentiation: Differentiation
-    differentiate: Address
-    together: Together
 
 
 def _workspace(
-    problem: IntegrationProblem, work: int, complex_work: int, directions: int, along: Together
+    problem: IntegrationProblem, work: int, along_work: int, directions: int, groups: int, together: bool
 ) -> AlphaWorkspace:
     width = len(problem.scale)
-    many = len(along.groups) > 0
-    one_by_one = differentiate.address if directions and not many else 0
-    directions_alone = 0 if many else directions
     return AlphaWorkspace(
-        resting(width), resting(width), resting(directions, width), newton(problem, work, complex_work),
-        consistency(problem, work, complex_work, directions_alone), differentiation(problem, complex_work),
-        one_by_one, along,
+        resting(width), resting(width), resting(directions, width), newton(problem, work, along_work),
+        consistency(problem, work, along_work, directions, together),
+        differentiation(problem, along_work, groups, together),
     )  # fmt: skip
 
 
@@ -265,12 +256,9 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
     old, new, dolds, own = scratch.old, scratch.new, scratch.dolds, scratch.newton
     copy(state, new)
     own.memory[0], own.memory[1] = 0.0, 0.0
-    differentiated, along = len(models.directions) > 0, scratch.together
-    many = len(along.groups) > 0
-    if many:
-        # In lanes all formulas of a step act on eight derivatives at once; rows are filled for outputs alone.
-        scatter(dstates, along.new)
-    due = 0
+    along, due = scratch.differentiation, 0
+    # The formulas of a step act on slopes side by side; rows of derivatives are filled for starts and outputs alone.
+    differentiated = along.differentiate != 0
     length = settings.step
     for stretch in range(len(edges) - 1):
         begin, end = edges[stretch], edges[stretch + 1]
@@ -281,14 +269,14 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
         # At the start and behind a jump of the loads the accelerations satisfy M a + J^T l = Q with the second rates of
         # the constraints. Within a held table they do not: the step passes its changes with the mean of both sides, and
         # w keeps its memory.
+        if differentiated and fresh and stretch > 0:
+            gather(along.new, dstates)
         if fresh and (stretch > 0 or settings.consistent):
             if not accelerate(problem, models, begin, within, new, dstates, scratch.consistency):
                 return SINGULAR, begin, 0
-            if many:
-                _accelerate_together_at(along.accelerate, problem, begin, within, new, scratch.consistency, along)
+        if differentiated and fresh:
+            scatter(dstates, along.new)
         if stretch == 0:
-            if many:
-                gather(along.new, dstates)
             count_turns(models.turns, begin, new, STEP_END)
             while due < len(problem.times) and problem.times[due] <= begin:
                 _record(n, 1.0, 1.0, new, new, dstates, dstates, out, dout, due)
@@ -342,20 +330,19 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
             note_step(log, detail, target)
             keep_slope(n, c, old, new, own.slope)
             if differentiated and not _differentiate_at(
-                scratch.differentiate, problem, models.tangents, models.directions, c, target, side, new, dolds,
-                dstates, scratch.differentiation,
-            ):  # fmt: skip
-                return SINGULAR, target, 0
-            if many and not _differentiate_together_at(
-                along.differentiate, problem, models.tangents, c, target, side, new, along
+                along.differentiate, problem, models.tangents, models.directions, c, target, side, new, along
             ):
                 return SINGULAR, target, 0
             # At spectral radius 1 errors of the multipliers alternate without decay: accelerations and multipliers are
             # solved for again, and velocities move onto the constraints.
             if problem.projected and width - 1 > n:
+                if differentiated:
+                    gather(along.new, dstates)
                 if not accelerate(problem, models, target, side, new, dstates, scratch.consistency):
                     return SINGULAR, target, 0
-            if many and due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
+                if differentiated:
+                    scatter(dstates, along.new)
+            if differentiated and due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
                 gather(along.old, dolds)
                 gather(along.new, dstates)
             while due < len(problem.times) and problem.times[due] <= target + 1e-9 * length:
@@ -377,14 +364,13 @@ def _integrate(problem, edges, opens, settings, models, state, dstates, out, dou
                 # After a halving the step doubles again as soon as it ends on the coarser grid.
                 if level > 0 and unit % (2 * stride) == 0:
                     level -= 1
-    if many:
+    if differentiated:
         gather(along.new, dstates)
     copy(new, state)
     return DONE, edges[-1], 0
 
 
 _differentiate_at = differentiate.at
-_differentiate_together_at, _accelerate_together_at = differentiate_together.at, accelerate_together.at
 
 
 @inlined

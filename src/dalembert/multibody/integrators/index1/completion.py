@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import Compiled, inner, kernel
 from dalembert.kernels.words import Address
 from dalembert.multibody.integrators.index1.index1 import (
@@ -11,9 +12,10 @@ from dalembert.multibody.integrators.index1.index1 import (
     Tools,
     demand,
     demand_along,
+    demand_together,
 )
 from dalembert.multibody.integrators.index1.least_squares import surplus_workspace
-from dalembert.multibody.integrators.index1.projection import project, project_along
+from dalembert.multibody.integrators.index1.projection import project, project_along, project_together
 from dalembert.multibody.integrators.shared.partitioning import (
     DEPENDENT,
     Partition,
@@ -36,27 +38,36 @@ from dalembert.multibody.integrators.shared.problem import (
 )
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.linear import storage
+from dalembert.multibody.kernels.slopes import one, slope_work
 from dalembert.multibody.kernels.states import MotionState, MotionStates, resting
 
 
-def make_tools(problem: IntegrationProblem, terms: Terms, work: int, complex_work: int, directions: int) -> Tools:
-    """Work for a model, with derivatives if there are any directions."""
+def make_tools(
+    problem: IntegrationProblem, terms: Terms, work: int, along_work: int, directions: int, *, together: bool = False
+) -> Tools:
+    """Work for a model, with derivatives if there are any directions, one by one or eight ``together``."""
     width, parted, projected = problem.exact_layout.size + 1, terms.way == PARTITIONED, terms.way == PROJECTED
     vector = np.zeros((4, width))
     return Tools(
-        work, complex_work, storage(problem.exact_layout), np.zeros((7, width), np.complex128), vector[0], vector[1],
+        work, along_work, storage(problem.exact_layout), slope_work(width, 7, 7, together), vector[0], vector[1],
         vector[2], vector[3], scratch(problem, directions if parted else 0),
         surplus_workspace(problem, terms.redundant, directions), resting(width), resting(width),
-        demand_along.address if directions else 0, partition.address if parted else 0, settle.address if parted else 0,
-        project.address if projected else 0, project_along.address if projected and directions else 0,
+        (demand_together if together else demand_along).address if directions else 0,
+        partition.address if parted else 0, settle.address if parted else 0, project.address if projected else 0,
+        (project_together if together else project_along).address if projected and directions else 0,
     )  # fmt: skip
 
 
-def kernels(way: int, derivatives: bool) -> list[Compiled]:
-    """Kernels that complete states under a stabilisation, and those for derivatives; but for redundant constraints."""
+def kernels(way: int, derivatives: type | None) -> list[Compiled]:
+    """Kernels that complete states under a stabilisation, and those for derivatives in an arithmetic.
+
+    Those for redundant constraints are not among them.
+    """
+    together = derivatives is Dual
     own = {PARTITIONED: [partition, settle], PROJECTED: [project]}.get(way, [])
-    along = {PARTITIONED: [settle_along], PROJECTED: [project_along]}.get(way, [])
-    return [complete, *own, *[demand_along, *along] * derivatives]
+    projected = project_together if together else project_along
+    along = {PARTITIONED: [settle_along], PROJECTED: [projected]}.get(way, [])
+    return [complete, *own, *[demand_together if together else demand_along, *along] * bool(derivatives)]
 
 
 @kernel
@@ -100,7 +111,7 @@ def complete(
     if terms.way == PARTITIONED:
         if not _settle_at(
             tools.settle, problem, models, t, within, VELOCITY, state, dstates, tools.work, tools.complex_work,
-            tools.complex_state, tools.partition,
+            one(tools.slopes)[0], tools.partition,
         ):  # fmt: skip
             return NEWTON_FAILED
     if projected:

@@ -6,7 +6,7 @@
 from typing import NamedTuple
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes2, Integers, Reals
+from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.integrators.index1.least_squares import (
     Surplus,
     invert_on_range,
@@ -18,10 +18,22 @@ from dalembert.multibody.integrators.shared.partitioning import Partition
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import balanced, largest
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
-from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise
 from dalembert.multibody.kernels.linear import solve as solve_linear
-from dalembert.multibody.kernels.states import MotionState, MotionStates, perturb, row, subtract
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
+from dalembert.multibody.kernels.slopes import (
+    Number,
+    SlopeWork,
+    along_kernels,
+    arrays_of,
+    one,
+    perturb,
+    read_states,
+    slope_of,
+    state_of,
+    write_states,
+)
+from dalembert.multibody.kernels.states import MotionState, MotionStates, row, subtract
 
 AS_THEY_COME, PROJECTED, PARTITIONED = range(3)  # what is done about positions and velocities off the constraints
 _MOST_ITERATIONS = 12
@@ -52,7 +64,7 @@ class Tools(NamedTuple):
     work: Address
     complex_work: Address
     exact: Factors
-    complex_state: Complexes2
+    slopes: SlopeWork
     gap: Reals
     answer: Reals
     second: Reals
@@ -139,30 +151,34 @@ def demand(
     return True
 
 
-@kernel
-def demand_along(
-    problem: IntegrationProblem, terms: Terms, directions: Integers, t: float, within: float, state: MotionState,
-    dstates: MotionStates, tools: Tools,
+def _demand_along(
+    like: Number, problem: IntegrationProblem, terms: Terms, directions: Integers, t: float, within: float,
+    state: MotionState, dstates: MotionStates, tools: Tools,
 ) -> None:  # fmt: skip
     """Derivatives of the accelerations and multipliers that a state demands, along all directions."""
-    n, last, complex_state = problem.n, len(state.x) - 1, tools.complex_state
-    r, drate, dsecond = complex_state[3], complex_state[4], complex_state[5]
-    for d in range(len(dstates.x)):
-        perturbed, dstate = directions[d], row(dstates, d)
-        set_signals(perturbed, t, within, tools.complex_work)
-        if terms.redundant:
+    n, last, (numbers, slopes) = problem.n, len(state.x) - 1, arrays_of(like, tools.slopes)
+    dstate, gap, answer = state_of(slopes), slopes[4], slopes[5]
+    for g in range(len(directions)):
+        set_signals(directions[g], t, within, tools.complex_work)
+        if terms.redundant:  # then directions are taken one by one
             _turn_at(
-                tools.surplus.turn, problem, perturbed, state, dstate, tools.complex_work, complex_state, tools.surplus
-            )
-        perturb(n, state, dstate, complex_state)
+                tools.surplus.turn, problem, directions[g], state, row(dstates, g), tools.complex_work,
+                one(tools.slopes)[0], tools.surplus,
+            )  # fmt: skip
+        # Linear in accelerations and multipliers, by the matrix of the state: no iteration.
+        read_states(dstates, g, tools.slopes.slopes)
+        perturb(n, state, dstate, numbers)
         _fill_gap(
-            perturbed, n, terms, complex_state[0], complex_state[1], complex_state[2], tools.complex_work, r, drate,
-            dsecond,
+            directions[g], n, terms, numbers[0], numbers[1], numbers[2], tools.complex_work, numbers[3], numbers[4],
+            numbers[5],
         )  # fmt: skip
         for i in range(last):
-            tools.gap[i] = r[i].imag / STEP
-        solve_linear(problem.exact_layout, tools.exact, tools.gap, tools.answer)
-        subtract(n, tools.answer, dstate)
+            gap[i] = slope_of(numbers[3][i])
+        solve_slopes(problem.exact_layout, tools.exact, gap, answer)
+        subtract(n, answer, dstate)
+        write_states(tools.slopes.slopes, g, dstates)
 
 
-_invert_at, _turn_at, _demand_along_at = invert_on_range.at, turn_range.at, demand_along.at
+demand_along, demand_together = along_kernels(_demand_along)
+_invert_at, _turn_at = invert_on_range.at, turn_range.at
+_demand_along_at = demand_along.at

@@ -16,7 +16,8 @@ from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import constraint_rates
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.states import MotionState, clear, perturb
+from dalembert.multibody.kernels.slopes import perturb
+from dalembert.multibody.kernels.states import MotionState, clear
 
 # Pivot, against the first one, of a constraint that follows from the others. Positions that have drifted off the
 # constraints give it a pivot of the size of the drift.

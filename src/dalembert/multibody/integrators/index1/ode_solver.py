@@ -88,10 +88,10 @@ class OdeSolver(Integrator):
             return None
         return replace(self, relative_tolerance=tolerance, absolute_tolerance=self.absolute_tolerance / 100), None
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """What completes states, with its linear systems; an implicit method needs derivatives in any case."""
-        derivatives = derivatives or self.method in IMPLICIT
-        return [*structure.full.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
+        along = complex if derivatives or self.method in IMPLICIT else None
+        return [*structure.full.linear_kernels, *kernels(self.stabilisation.way, along)]
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples, one after another."""

@@ -11,9 +11,19 @@ from dalembert.multibody.integrators.shared.partitioning import fill_gap
 from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import largest, weigh_along
 from dalembert.multibody.kernels.assembly import set_signals
-from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, row
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
+from dalembert.multibody.kernels.slopes import (
+    Number,
+    along_kernels,
+    arrays_of,
+    joined,
+    read_states,
+    slope_of,
+    state_of,
+    write_states,
+)
+from dalembert.multibody.kernels.states import MotionState, MotionStates, clear
 
 _MOST_ITERATIONS = 15
 _NOTHING = 1e-16
@@ -34,49 +44,53 @@ def _move(problem, level, tools, state, change):
     return largest
 
 
-@kernel
-def project_along(
-    problem: IntegrationProblem, level: int, directions: Integers, t: float, within: float, state: MotionState,
-    dstates: MotionStates, tools: Tools,
+def _project_along(
+    like: Number, problem: IntegrationProblem, level: int, directions: Integers, t: float, within: float,
+    state: MotionState, dstates: MotionStates, tools: Tools,
 ) -> None:  # fmt: skip
     """Derivatives of the projection of coordinates or of velocities (``level``), along all directions."""
-    for d in range(len(dstates.x)):
-        _follow(problem, level, directions[d], t, within, state, row(dstates, d), tools, tools.change)
+    numbers, slopes = arrays_of(like, tools.slopes)
+    for g in range(len(directions)):
+        read_states(dstates, g, tools.slopes.slopes)
+        _follow(problem, level, directions[g], t, within, state, state_of(slopes), tools, numbers, slopes[4:])
+        write_states(tools.slopes.slopes, g, dstates)
+
+
+project_along, project_together = along_kernels(_project_along)
 
 
 @inner
-def _follow(problem, level, model, t, within, state, dstate, tools, change):
-    """The derivative of a projection along one direction. ``dstate`` holds the derivative of the state before the
-    projection, and that of the one after it when done. The equations are those of the projection in complex numbers:
-    M w + J^T m = 0 in the coordinates before, and the constraints after.
+def _follow(problem, level, model, t, within, state, dstate, tools, numbers, slopes):
+    """The derivative of a projection along directions. ``dstate`` holds that of the state before the projection, and
+    that of the one after it when done. The equations are those of the projection: M w + J^T m = 0 in the coordinates
+    before, and the constraints after.
     """
-    n, last, complex_state, work = problem.n, len(state.x) - 1, tools.complex_state, tools.complex_work
-    base, gap, answer = tools.base, tools.gap, tools.answer
-    x, v, f, weighed = complex_state[0], complex_state[1], complex_state[3], complex_state[4]
-    dweighed, before = complex_state[5], complex_state[6]  # derivatives of w and m; coordinates before, which stay
+    n, last, work, base, change = problem.n, len(state.x) - 1, tools.complex_work, tools.base, tools.change
+    x, v, f, weighed, before = numbers[0], numbers[1], numbers[3], numbers[4], numbers[6]
+    gap, answer, dw = slopes[0], slopes[1], slopes[2]
     set_signals(model, t, within, work)
     for i in range(last + 1):
-        dweighed[i] = 0.0
-        before[i] = complex(base.x[i], STEP * dstate.x[i]) if i < n else 0.0
+        dw[i] = 0.0
+        before[i] = joined(base.x[i], dstate.x[i]) if i < n else 0.0 * before[i]
+    # Constraints are those of the coordinates after, so that the solution is corrected.
     for _ in range(3):  # the matrix is that of the coordinates before
         for i in range(last + 1):
-            weighed[i] = complex(change.a[i] if i < n else change.x[i], dweighed[i].imag)
-        weigh_along(model, n, before, weighed, work, complex_state, f)
+            weighed[i] = joined(change.a[i] if i < n else change.x[i], dw[i])
+        weigh_along(model, n, before, weighed, work, numbers, f)
         for i in range(n):
             # Rows of motion in the coordinates before the projection, rows of constraints in those after it.
-            gap[i] = f[i].imag / STEP
-            shift = dweighed[i].imag
-            x[i] = complex(state.x[i], STEP * dstate.x[i] - (shift if level == POSITION else 0.0))
-            v[i] = complex(state.v[i], STEP * dstate.v[i] - (shift if level == VELOCITY else 0.0))
-        fill_gap(model, n, level, x, v, complex_state[2], work, f, weighed)
+            gap[i] = slope_of(f[i])
+            x[i] = joined(state.x[i], dstate.x[i] - dw[i] if level == POSITION else dstate.x[i])
+            v[i] = joined(state.v[i], dstate.v[i] - dw[i] if level == VELOCITY else dstate.v[i])
+        fill_gap(model, n, level, x, v, numbers[2], work, f, weighed)
         for i in range(n, last):
-            gap[i] = -f[i].imag / STEP
-        solve(problem.exact_layout, tools.exact, gap, answer)
+            gap[i] = -slope_of(f[i])
+        solve_slopes(problem.exact_layout, tools.exact, gap, answer)
         for i in range(last):
-            dweighed[i] = complex(0.0, dweighed[i].imag - STEP * answer[i])
+            dw[i] -= answer[i]
     values = dstate.x if level == POSITION else dstate.v
     for i in range(n):
-        values[i] -= dweighed[i].imag / STEP
+        values[i] -= dw[i]
 
 
 @kernel

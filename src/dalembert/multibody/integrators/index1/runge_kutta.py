@@ -35,6 +35,7 @@ from dalembert.multibody.kernels.states import (
     row,
     rows,
 )
+from dalembert.multibody.model.directions import is_dual, widest
 from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
@@ -72,25 +73,32 @@ class RungeKutta4(Integrator):
     takes_redundancy = True
     convergence = 4
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """The loop with its linear systems, and what completes states."""
         return [integrate, *structure.full.linear_kernels, *kernels(self.stabilisation.way, derivatives)]
 
+    @property
+    def takes_duals(self) -> bool:
+        """Whether derivatives along many directions may be dual numbers."""
+        return self.stabilisation.way != PARTITIONED
+
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
-        samples, directions = batch.samples, len(batch.perturbed)
+        samples, count = batch.samples, len(batch.perturbed)
         problem, terms = posed(self.stabilisation, samples, batch.problem, self.step)
-        works = samples[0].real.call(), samples[0].tangents.call()
-        tools = make_tools(problem, terms, works[0].address, works[1].address, directions)
-        scratch = _workspace(batch.shape[1], directions, tools)
+        directions = batch.directions(takes_duals=self.takes_duals and not terms.redundant)
+        works = samples[0].real.call(), widest(samples[0].tangents, directions).call()
+        work, along = (own.address for own in works)
+        tools = make_tools(problem, terms, work, along, count, together=is_dual(directions))
+        scratch = _workspace(batch.shape[1], count, tools)
         _fill(scratch.stage.dstates, batch.dstates)
         steps = self.step_ends(batch.end, samples[0].jumps)
         ends = np.zeros(0) if steps is None or not batch.logged else steps[1:]
         runs = []
-        for lowered, edges, start, models in batch:
+        for lowered, edges, start, models in batch.along(directions):
             _fill(scratch.stage.state, start)
             tools.partition.rank[0] = 0  # independent coordinates are chosen anew
-            out = resting(1 + directions, *batch.shape)
+            out = resting(1 + count, *batch.shape)
             counts = np.zeros(4, dtype=np.int64)
             status, time = integrate(problem, edges, float(self.step), terms, models, out, counts, scratch)
             if status == SINGULAR and not np.max(np.abs(scratch.stage.state.x)) < _UNBOUNDED:

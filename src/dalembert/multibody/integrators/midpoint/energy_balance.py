@@ -6,21 +6,23 @@ what loads and losses have worked in the middles of the steps.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes, Complexes2, Complexes3, Integers, Reals, Reals2
+from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
+from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.words import Address, Complexes3, Integers, Reals, Reals2, Reals4
 from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
-from dalembert.multibody.integrators.midpoint.midpoint_step import Along, MidpointStep
+from dalembert.multibody.integrators.midpoint.midpoint_step import MidpointStep, converge_along, perturb_step
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import energies
 from dalembert.multibody.kernels.block_table import BlockModel
-from dalembert.multibody.kernels.elementary import STEP, reciprocal, where
+from dalembert.multibody.kernels.elementary import STEP, reciprocal, size_of, where
 from dalembert.multibody.kernels.records import model_at
+from dalembert.multibody.kernels.slopes import SlopeWork, arrays_of, joined, slope_of, slope_work, worst
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model import evaluate
 from dalembert.multibody.model.lowered import Lowered
@@ -43,10 +45,24 @@ class FreeRigidMotions(NamedTuple):
     shifts: Complexes3
 
 
+class BalanceAlong(NamedTuple):
+    """In complex or dual numbers: shifts of rigid motions; motions, momenta, direction of the force, sums of energies.
+
+    The arrays are those of `Balance`.
+    """
+
+    shift: Reals2
+    motions: Reals2
+    weighed: Reals2
+    force: Reals
+    totals: Reals
+
+
 class Balance(NamedTuple):
-    """Rigid motions; workspace for them, their momenta, the direction of the force and sums of energies; kernels. It
-    has real and complex numbers. ``converge`` and ``converge_along`` are the addresses of these kernels: both are 0 if
-    the energy is not balanced, the second one is 0 if there are no directions, too.
+    """Rigid motions; workspace for them, their momenta, the direction of the force and sums of energies. Along
+    directions: motions, momenta and force in ``numbers`` (2 motions + 1), sums of energies in ``sums`` (1), and shifts
+    of the rigid motions (groups, motions, n, doubles). ``converge`` is the address of this kernel, 0 if the energy is
+    not balanced.
     """
 
     rigid: FreeRigidMotions
@@ -54,39 +70,54 @@ class Balance(NamedTuple):
     weighed: Reals2
     force: Reals
     totals: Reals
-    complex_motions: Complexes2
-    complex_weighed: Complexes2
-    complex_force: Complexes
-    complex_totals: Complexes
+    numbers: SlopeWork
+    sums: SlopeWork
+    shifts: Reals4
     converge: Address
-    converge_along: Address
 
 
-def balance_workspace(width: int, rigid: FreeRigidMotions | None = None) -> Balance:
+def balance_workspace(width: int, rigid: FreeRigidMotions | None = None, *, together: bool = False) -> Balance:
     """Workspace for the balance of N + 1 = ``width`` unknowns; without rigid motions the energy is not balanced."""
-    addresses = (converge.address, converge_along.address if len(rigid.shifts) else 0) if rigid else (0, 0)
     none = np.zeros(0)
     own = rigid or FreeRigidMotions(np.zeros(0, np.int64), none, none, np.zeros((0, 0)), np.zeros((0, 0, 0), complex))
-    motions, complex_motions = np.zeros((2, len(own.spin), width)), np.zeros((2, len(own.spin), width), complex)
+    count, groups = len(own.spin), range(0, len(own.shifts), DIRECTIONS)
+    motions, weighed = np.zeros((2, count, width))
+    shifts = own.shifts.view(float).reshape(*own.shifts.shape, 2)
+    if together:
+        slopes = np.imag(own.shifts) / STEP
+        shifts = np.array([as_duals(own.shift, slopes[first : first + DIRECTIONS]) for first in groups])
     return Balance(
-        own, motions[0], motions[1], np.zeros(width), np.zeros(3), complex_motions[0], complex_motions[1],
-        np.zeros(width, complex), np.zeros(3, complex), *addresses,
+        own, motions, weighed, np.zeros(width), np.zeros(3), slope_work(width, 0, 2 * count + 1, together),
+        slope_work(3, 0, 1, together), shifts, converge.address if rigid else 0,
     )  # fmt: skip
 
 
+@inlined
+def balance_along(like, balance, g):
+    """Work of the balance along a group of directions."""
+    numbers, count = arrays_of(like, balance.numbers)[0], len(balance.rigid.spin)
+    shift = arrays_of(like, SlopeWork(balance.shifts[g], balance.shifts[g]))[0]  # whose slopes are not used
+    totals = arrays_of(like, balance.sums)[0][0]
+    return BalanceAlong(shift, numbers[:count], numbers[count : 2 * count], numbers[2 * count], totals)
+
+
 def first_energies(
-    lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
+    lowered: Lowered, directions: Sequence[BlockModel], start: MotionState, dstarts: MotionState, within: float
 ) -> tuple[float, np.ndarray]:
     """Energy in J at the start (N + 1,), and its derivatives (directions,); ``within`` the first smooth stretch."""
-    energy = _energy_at_start(lowered.real, start.x, start.v, within).real
-    derivatives = np.zeros(len(perturbed))
-    for d, entry in enumerate(perturbed):
-        x, v = start.x + 1j * STEP * dstarts.x[d], start.v + 1j * STEP * dstarts.v[d]
-        derivatives[d] = _energy_at_start(entry.complex_model, x, v, within).imag / STEP
-    return energy, derivatives
+    energy, slopes = _energy_at_start(lowered.real, start.x, start.v, within), []
+    for number, model in enumerate(directions):
+        if model.dtype is Dual:
+            group = slice(DIRECTIONS * number, DIRECTIONS * (number + 1))
+            x, v = as_duals(start.x, dstarts.x[group]), as_duals(start.v, dstarts.v[group])
+            slopes += _energy_at_start(model, x, v, within)[1:].tolist()
+        else:
+            x, v = start.x + 1j * STEP * dstarts.x[number], start.v + 1j * STEP * dstarts.v[number]
+            slopes.append(_energy_at_start(model, x, v, within).imag / STEP)
+    return float(energy), np.array(slopes[: len(dstarts.x)])
 
 
-def _energy_at_start(model: BlockModel, x: np.ndarray, v: np.ndarray, within: float) -> complex:
+def _energy_at_start(model: BlockModel, x: np.ndarray, v: np.ndarray, within: float) -> Any:
     totals = evaluate.energies(model, x[None], v[None], np.zeros(1), np.array([within]))
     return totals[0, 0] + totals[0, 1]
 
@@ -205,47 +236,36 @@ def stronger(h, strength, excess, power):
 
 
 @inner
-def _direct_along(perturbed, n, shift, at, middle, buffers, e):
-    """The direction of the force in complex numbers."""
-    motions, weighed, force = e.complex_motions, e.complex_weighed, e.complex_force
-    _fill_motions(n, e.rigid, shift, at.xm, motions)
-    for j in range(len(weighed)):
-        weigh_along(perturbed, n, at.xm, motions[j], middle, buffers, weighed[j])
-    weigh_along(perturbed, n, at.xm, at.vm, middle, buffers, force)
-    _remove(n, motions, weighed, force)
-
-
-@kernel
-def converge_along(
-    problem: IntegrationProblem, matrices: Matrices, perturbed: Address, d: int, strength: float, h: float,
-    dgoal: float,
-    step: MidpointStep, along: Along, balance: Balance,
-) -> float:  # fmt: skip
-    """Derivative of the step along direction ``d``; the derivative of the work in it."""
-    n, s, ds, at, push = problem.n, step.rows, along.rows, along.complex_rows, along.push
+def converge_along_with_energy(problem, matrices, perturbed, strength, h, dgoal, s, along, rigid, balance):
+    """Derivatives of the step along directions; those of the work in it. ``dgoal``: of the energy that it must have."""
+    n, ds, at, push, force, totals = problem.n, along.rows, along.at, along.push, balance.force, balance.totals
     middle, end, buffers = along.middle, along.end, along.vectors[4:]
-    shift, force, totals = balance.rigid.shifts[d], balance.complex_force, balance.complex_totals
-    slope, dgain, before = 0.0, 0.0, 1e300
+    slope, dgain, before = 0.0 * dgoal, 0.0 * dgoal, 1e300
     for attempt in range(2 * MOST_STRENGTHS):
         power = 0.0
+        for k in range(n):
+            push[k] = 0.0
         if strength != 0.0:
-            midpoint.perturb_step(s, ds, at)
-            _direct_along(perturbed, n, shift, at, middle, buffers, balance)
+            # The direction of the force moves with the step, and so do the rigid motions that it leaves out.
+            perturb_step(s, ds, at)
+            _fill_motions(n, rigid, balance.shift, at.xm, balance.motions)
+            for j in range(len(balance.weighed)):
+                weigh_along(perturbed, n, at.xm, balance.motions[j], middle, buffers, balance.weighed[j])
+            weigh_along(perturbed, n, at.xm, at.vm, middle, buffers, force)
+            _remove(n, balance.motions, balance.weighed, force)
             for k in range(n):
-                push[k] = (complex(strength, STEP * slope) * force[k]).imag / STEP
+                push[k] = slope_of(joined(strength, slope) * force[k])
                 power += s.vm[k] * force[k].real
-        else:
-            for k in range(n):
-                push[k] = 0.0
-        midpoint.converge_along(problem, matrices, perturbed, h, step, along)
-        midpoint.perturb_step(s, ds, at)
+        converge_along(problem, matrices, perturbed, h, s, along)
+        perturb_step(s, ds, at)
         energy, gain = energy_of_step(perturbed, h, at, middle, end, totals)
-        dgain = gain.imag / STEP
-        excess = energy.imag / STEP - (dgoal + dgain)
-        size = (abs(totals[0].imag) + abs(totals[1].imag)) / STEP + abs(dgoal)
-        if strength == 0.0 or abs(excess) <= 1e-14 * size or (attempt > 3 and abs(excess) > 0.5 * before):
+        dgain = slope_of(gain)
+        excess = slope_of(energy) - (dgoal + dgain)
+        size = size_of(slope_of(totals[0])) + size_of(slope_of(totals[1])) + size_of(dgoal) + 1e-300
+        left = worst(size_of(excess) / size)
+        if strength == 0.0 or left <= 1e-14 or (attempt > 3 and left > 0.5 * before):
             break
-        before = abs(excess)
+        before = left
         # The same secant for the derivative of the strength.
-        slope += excess / (h * power)
+        slope = slope + excess / (h * power)
     return dgain

@@ -12,7 +12,6 @@ from dalembert.multibody.integrators.midpoint.energy_balance import (
     Balance,
     balance_workspace,
     converge,
-    converge_along,
     first_energies,
 )
 from dalembert.multibody.integrators.midpoint.lanes_balance import balance_lanes
@@ -20,8 +19,10 @@ from dalembert.multibody.integrators.midpoint.lanes_loop import run_in_lanes
 from dalembert.multibody.integrators.midpoint.symmetries import rigid_motions
 from dalembert.multibody.integrators.midpoint.variational import Variational
 from dalembert.multibody.integrators.shared.batch import Batch
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.histories import energy_history
 from dalembert.multibody.kernels.states import MotionState, resting, row
+from dalembert.multibody.model.directions import is_dual
 from dalembert.multibody.model.lane_models import lane_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
@@ -68,10 +69,12 @@ class EnergyMomentum(Variational):
     0.001
     """
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    is_balanced = True
+
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """Those of `Variational`, of the balance, and of the components' energies."""
-        own = [*super().kernels(structure, derivatives), converge, energy_history, *[converge_along] * derivatives]
-        arithmetics = (float, complex) if derivatives else (float,)
+        own = [*super().kernels(structure, derivatives), converge, energy_history]
+        arithmetics = (float, derivatives) if derivatives else (float,)
         roles = [(kind, role) for kind in structure.index for role in _ROLES if kind.has(role)]
         own += [kind.kernel("mean_tangent", float) for kind in structure.index if kind.has("mean")]
         return [*own, *(kind.kernel(role, dtype) for dtype in arithmetics for kind, role in roles)]
@@ -89,19 +92,21 @@ class EnergyMomentum(Variational):
         balances = []
         for number, lowered in enumerate(part.samples):
             within = 0.5 * (part.problem.edges[number, 0] + part.problem.edges[number, 1])
-            energy, _, balance = self._balance(lowered, (), row(part.states, number), part.dstates, within)
+            energy, _, balance = self._balance(lowered, (), (), row(part.states, number), part.dstates, within)
             balances.append((energy, balance.rigid))
         if any(not np.array_equal(rigid.spin, balances[0][1].spin) for _, rigid in balances):
             return resting(len(balances), *part.shape), np.ones(len(balances), dtype=bool)
         return run_in_lanes(part, float(self.step), float(self.newton_tolerance), self._damped, balances)
 
     def _balance(
-        self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
-    ) -> tuple[float, np.ndarray, Balance]:
+        self, lowered: Lowered, perturbed: Sequence[Lowered], directions: Sequence[BlockModel], start: MotionState,
+        dstarts: MotionState, within: float,
+    ) -> tuple[float, np.ndarray, Balance]:  # fmt: skip
         """Energy at the start with its derivatives, and the force that keeps it."""
         means = lowered.structure.takes_means
-        for model in (lowered.real, *(entry.complex_model for entry in perturbed)):
+        for model in (lowered.real, *directions):
             model.need("energy").averaged(means)
         lowered.tangents.averaged(means)
-        energies = first_energies(lowered, perturbed, start, dstarts, within)
-        return *energies, balance_workspace(len(start.x), rigid_motions(lowered, perturbed))
+        energies = first_energies(lowered, directions, start, dstarts, within)
+        rigid = rigid_motions(lowered, perturbed)
+        return *energies, balance_workspace(len(start.x), rigid, together=is_dual(directions))

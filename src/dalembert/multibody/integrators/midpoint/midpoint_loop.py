@@ -6,12 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2, Reals3
+from dalembert.kernels.words import Reals, Reals2
 from dalembert.multibody.integrators.midpoint import energy_balance as balancing
 from dalembert.multibody.integrators.midpoint import midpoint_step as midpoint
 from dalembert.multibody.integrators.midpoint import prediction
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance
-from dalembert.multibody.integrators.midpoint.midpoint_step import Along, MidpointStep
+from dalembert.multibody.integrators.midpoint.midpoint_derivatives import Derivatives, derivatives, differentiate
+from dalembert.multibody.integrators.midpoint.midpoint_step import MidpointStep
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate, consistency
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append
@@ -34,11 +35,11 @@ from dalembert.multibody.integrators.shared.problem import (
     SampleModels,
     note_step,
 )
-from dalembert.multibody.integrators.shared.settling import settle, settle_along
+from dalembert.multibody.integrators.shared.settling import settle
 from dalembert.multibody.kernels.assembly import set_signals
 from dalembert.multibody.kernels.block_table import Call
 from dalembert.multibody.kernels.records import call_at
-from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, resting, row
+from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, clear, copy, row
 from dalembert.multibody.model.turns import STEP_END, count_turns
 
 AGED = 0.05  # contraction at which the next step begins with new matrices
@@ -53,20 +54,6 @@ class MidpointSettings(NamedTuple):
     newton_tolerance: float
     damped: bool
     energy: float
-
-
-class Derivatives(NamedTuple):
-    """Work of the derivatives along directions. ``slopes`` (directions, 2, N + 1); ``energies`` (directions,) are
-    derivatives of the energy, at the start and then of the balanced one. ``differentiate`` is the address of the
-    kernel, 0 if there are no directions.
-    """
-
-    along: Along
-    slopes: Reals3
-    energies: Reals
-    old: MotionState
-    complex_state: Complexes2
-    differentiate: Address
 
 
 class MidpointWorkspace(NamedTuple):
@@ -85,69 +72,22 @@ class MidpointWorkspace(NamedTuple):
 
 
 def workspace(
-    problem: IntegrationProblem, pattern: Pattern, calls: Sequence[Call], complex_calls: Sequence[Call],
+    problem: IntegrationProblem, pattern: Pattern, calls: Sequence[Call], along_calls: Sequence[Call],
     balance: Balance,
-    denergies: np.ndarray, dstates: MotionState,
+    denergies: np.ndarray, dstates: MotionState, together: bool,
 ) -> MidpointWorkspace:  # fmt: skip
-    """Workspace for one sample; two real and two complex calls, for the middle and the end of a step."""
+    """Workspace for one sample; two calls in real numbers and two along directions, for middle and end of a step."""
     directions, width = dstates.x.shape
-    works, complex_works = [call.address for call in calls], [call.address for call in complex_calls]
-    out = outputs(_ENDS, dstates, works[0], complex_works[0])
-    derivatives = Derivatives(
-        midpoint.along_workspace(width, *complex_works), np.zeros((directions, 2, width)), denergies, resting(width),
-        out.complex_state, differentiate.address if directions else 0,
-    )  # fmt: skip
+    (work, end_work), (along, end_along) = ([call.address for call in own] for own in (calls, along_calls))
+    out = outputs(_ENDS, dstates, work, along, together)
     return MidpointWorkspace(
-        scratch(pattern, 0), consistency(problem, works[0], complex_works[0], directions),
-        midpoint.step_workspace(width, *works), balance, np.zeros((2, width)), out, derivatives,
+        scratch(pattern, 0), consistency(problem, work, along, directions, together),
+        midpoint.step_workspace(width, work, end_work), balance, np.zeros((2, width)), out,
+        derivatives(along, end_along, denergies, width, balance.converge != 0, together),
     )  # fmt: skip
 
 
-@inner
-def _read(n, s, new):
-    """State at the end of a step; accelerations and multipliers to start from."""
-    for k in range(len(s.x0)):
-        new.x[k] = s.x1[k]
-        if k < n:
-            new.v[k], new.a[k] = s.v1[k], s.b[k]
-
-
-@kernel
-def differentiate(
-    problem: IntegrationProblem, matrices: Matrices, directions: Integers, step: MidpointStep, balance: Balance,
-    strength: float, h: float, last: float,
-    t: float, target: float, within: float, new: MotionState, dnews: MotionStates, moved: Reals2, scratch: Derivatives,
-) -> None:  # fmt: skip
-    """Derivatives of a step along all directions."""
-    n, along, dold, slopes, energies = problem.n, scratch.along, scratch.old, scratch.slopes, scratch.energies
-    middle, end, ds = along.middle, along.end, along.rows
-    for d in range(len(directions)):
-        perturbed, dnew = directions[d], row(dnews, d)
-        copy(dnew, dold)
-        set_signals(perturbed, t + 0.5 * h, within, middle)
-        set_signals(perturbed, target, within, end)
-        call_at(middle).step = h if balance.converge_along != 0 else 0.0
-        means = midpoint.takes_means(perturbed, middle)
-        if means:
-            prediction.begin_by_means(n, h, last, dold, slopes[d], ds)
-        else:
-            prediction.begin(n, h, dold, slopes[d], ds)
-        if balance.converge_along == 0:
-            midpoint.converge_along(problem, matrices, perturbed, h, step, along)
-        else:
-            energies[d] += _balance_along_at(
-                balance.converge_along, problem, matrices, perturbed, d, strength, h, energies[d], step, along, balance
-            )
-        if means:
-            prediction.keep_means(n, h, last, ds, slopes[d])
-        else:
-            prediction.keep_missed(n, dold, ds, slopes[d])
-        _read(n, ds, dnew)
-        settle_along(problem, matrices, perturbed, new, dnew, moved, end, scratch.complex_state, VELOCITY)
-
-
-_balance_at, _balance_along_at = balancing.converge.at, balancing.converge_along.at
-_differentiate_at = differentiate.at
+_balance_at, _differentiate_at = balancing.converge.at, differentiate.at
 
 
 @inner
@@ -162,7 +102,7 @@ def integrate(
     problem: IntegrationProblem, edges: Reals, settings: MidpointSettings, models: SampleModels, new: MotionState,
     dnews: MotionStates,
     out: MotionStates, dout: Histories, log: Log, matrices: Matrices, consistent: Consistency, step: MidpointStep,
-    balance: Balance, slope: Reals2, outputs: Outputs, derivatives: Derivatives,
+    balance: Balance, slope: Reals2, outputs: Outputs, along: Derivatives,
 ) -> tuple[int, float, int]:  # fmt: skip
     """Run one sample between ``edges`` (s): status, time reached, and the unknown that moved most. ``new`` (N + 1), the
     state at the start, and its derivatives ``dnews`` (directions, N + 1) are overwritten; ``out`` (times, N + 1) and
@@ -170,7 +110,7 @@ def integrate(
     """
     n, times, scale, counts, s = problem.n, problem.times, problem.scale, log.counts, step.rows
     between, moved, last = outputs.between, outputs.moved, outputs.last
-    slopes, complex_work = derivatives.slopes, derivatives.along.middle
+    slopes, complex_work = along.slopes, along.middle
     energy, due = settings.energy, 0
     strength, gain = 0.0, 0.0
     speed, h = 1.0 / (edges[-1] - edges[0]), 0.0
@@ -190,12 +130,12 @@ def integrate(
         begin, nominal, number, level = t, (end - t) / steps, 0, 0
         stale, fresh, made, wary = True, True, 0.0, 0
         _clear(slope)
-        for d in range(len(models.directions)):
+        for d in range(len(slopes)):
             _clear(slopes[d])
         before = 0.0
         if means:
             prediction.open_means(n, new, slope)
-            for d in range(len(models.directions)):
+            for d in range(len(slopes)):
                 prediction.open_means(n, row(dnews, d), slopes[d])
         last.known[0] = 0
         arrived = True
@@ -246,7 +186,7 @@ def integrate(
                 )  # fmt: skip
             counts[1] += iterations
             if converged:
-                _read(n, s, between)
+                midpoint.read(n, s, between)
                 # The end of the step fulfils the constraints to the tolerance of Newton; settled, to rounding, at the
                 # level of velocities, so that nothing drifts.
                 converged = settle(problem, matrices, models.real, between, moved, step.end, VELOCITY)
@@ -275,8 +215,8 @@ def integrate(
                 speed = max(speed, abs(s.vm[k]) / scale[k])
             if len(models.directions) > 0:
                 _differentiate_at(
-                    derivatives.differentiate, problem, matrices, models.directions, step, balance, strength, h, before,
-                    t, target, within, new, dnews, moved, derivatives,
+                    along.differentiate, problem, matrices, models.directions, step, balance, strength, h, before, t,
+                    target, within, new, dnews, moved, along,
                 )  # fmt: skip
             note_step(log, iterations, target)
             before = h

@@ -19,22 +19,24 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner, kernel
-from dalembert.kernels.words import Address, Complexes, Complexes2, Reals, Reals2
+from dalembert.kernels.words import Address, Reals, Reals2
 from dalembert.multibody.integrators.shared.convergence import (
     BALANCED,
     CLOSED,
     MAGNIFIED,
     NOISE,
     ROUNDING,
+    has_settled,
     largest_entry,
 )
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_product
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
-from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.elementary import size_of
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
 from dalembert.multibody.kernels.records import call_at, model_at
+from dalembert.multibody.kernels.slopes import joined, maximum, slope_of, worst
 from dalembert.multibody.kernels.states import clear
 
 MOST_ITERATIONS = 20
@@ -54,19 +56,6 @@ class StepRows(NamedTuple):
     b: Reals
 
 
-class ComplexRows(NamedTuple):
-    """The same in complex numbers."""
-
-    x0: Complexes
-    xm: Complexes
-    x1: Complexes
-    v0: Complexes
-    vm: Complexes
-    v1: Complexes
-    a: Complexes
-    b: Complexes
-
-
 class MidpointStep(NamedTuple):
     """Work of a step: calls for its middle and its end, its rows, a force ``push`` (N + 1,) against it, vectors."""
 
@@ -78,29 +67,34 @@ class MidpointStep(NamedTuple):
 
 
 class Along(NamedTuple):
-    """Work of the derivative of a step: the same, and in complex numbers rows and vectors."""
+    """Work of the derivative of a step: the same in slopes, with ``slopes`` (6, N + 1), and the step in complex or dual
+    numbers, with vectors of these.
+    """
 
     middle: Address
     end: Address
     rows: StepRows
     push: Reals
-    complex_rows: ComplexRows
-    vectors: Complexes2
+    slopes: Reals2
+    at: StepRows
+    vectors: Reals2
 
 
 def step_workspace(width: int, middle: int, end: int) -> MidpointStep:
     """Workspace for a step of N + 1 = ``width`` unknowns; the calls are those of real numbers."""
-    return MidpointStep(middle, end, _rows(width), np.zeros(width), np.zeros((7, width)))
+    return MidpointStep(middle, end, StepRows(*np.zeros((8, width))), np.zeros(width), np.zeros((7, width)))
 
 
-def along_workspace(width: int, middle: int, end: int) -> Along:
-    """Workspace for the derivative of a step; the calls are those of complex numbers."""
-    complex_rows, vectors = ComplexRows(*np.zeros((8, width), complex)), np.zeros((7, width), complex)
-    return Along(middle, end, _rows(width), np.zeros(width), complex_rows, vectors)
+@inlined
+def along_of(middle, end, numbers, slopes):
+    """Work of the derivative of a step in numbers along directions (15, N + 1) and slopes (15, N + 1)."""
+    return Along(middle, end, rows_of(slopes), slopes[8], slopes[9:15], rows_of(numbers), numbers[8:15])
 
 
-def _rows(width: int) -> StepRows:
-    return StepRows(*np.zeros((8, width)))
+@inlined
+def rows_of(m):
+    """The rows of a step in a matrix (8, N + 1)."""
+    return StepRows(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7])
 
 
 @inner
@@ -119,6 +113,15 @@ def place(n, h, s):
         s.x1[k] = s.x0[k] + way
     for k in range(n, len(s.x0)):
         s.xm[k] = 0.5 * (s.x0[k] + s.x1[k])
+
+
+@inner
+def read(n, s, new):
+    """State at the end of a step; accelerations and multipliers to start from."""
+    for k in range(len(s.x0)):
+        new.x[k] = s.x1[k]
+        if k < n:
+            new.v[k], new.a[k] = s.v1[k], s.b[k]
 
 
 @inlined
@@ -175,11 +178,11 @@ def _correct(n, size, matrices, h, f, gap, rate, first, other, s, means):
     """
     scale_constraints(n, size, h, f, gap, rate)
     # First the implicit midpoint rule, then the projection of the velocities with the masses alone.
-    solve(matrices.pattern.layout, matrices.real, f, first)
+    solve_slopes(matrices.pattern.layout, matrices.real, f, first)
     if means:
         clear(other)
     else:
-        solve(matrices.pattern.layout, matrices.rigid, gap, other)
+        solve_slopes(matrices.pattern.layout, matrices.rigid, gap, other)
     take_off(n, size, h, first, other, f, gap, s)
 
 
@@ -293,27 +296,20 @@ def passes(norm, remaining, force):
 
 @inner
 def perturb_step(s, ds, at):
-    """The step plus the imaginary step along a direction."""
-    # Numbers, not arrays, are joined: the complex step has its memory, and nothing is allocated.
+    """The step of a model along directions: the real one with its slopes."""
+    # Numbers, not arrays, are joined: what is joined has its memory, and nothing is allocated.
     for k in range(len(s.x0)):
-        at.x0[k] = complex(s.x0[k], STEP * ds.x0[k])
-        at.xm[k] = complex(s.xm[k], STEP * ds.xm[k])
-        at.x1[k] = complex(s.x1[k], STEP * ds.x1[k])
-        at.v0[k] = complex(s.v0[k], STEP * ds.v0[k])
-        at.vm[k] = complex(s.vm[k], STEP * ds.vm[k])
-        at.v1[k] = complex(s.v1[k], STEP * ds.v1[k])
-        at.a[k] = complex(s.a[k], STEP * ds.a[k])
-        at.b[k] = complex(s.b[k], STEP * ds.b[k])
+        at.x0[k], at.xm[k], at.x1[k] = joined(s.x0[k], ds.x0[k]), joined(s.xm[k], ds.xm[k]), joined(s.x1[k], ds.x1[k])
+        at.v0[k], at.vm[k], at.v1[k] = joined(s.v0[k], ds.v0[k]), joined(s.vm[k], ds.vm[k]), joined(s.v1[k], ds.v1[k])
+        at.a[k], at.b[k] = joined(s.a[k], ds.a[k]), joined(s.b[k], ds.b[k])
 
 
-@kernel
-def converge_along(
-    problem: IntegrationProblem, matrices: Matrices, perturbed: Address, h: float, step: MidpointStep, along: Along
-) -> None:
-    """Derivative of a converged step along a direction, by the same iteration on imaginary parts."""
-    s, b, ds, at, vectors, push = step.rows, step.vectors, along.rows, along.complex_rows, along.vectors, along.push
-    n, size, scale, mass, middle, end = problem.n, len(s.x0) - 1, problem.scale, matrices.mass, along.middle, along.end
-    f, gap, rate, first, other, heavier = b[0], b[1], b[2], b[4], b[5], b[6]
+@inner
+def converge_along(problem, matrices, perturbed, h, s, along):
+    """Derivatives of a converged step along directions, by the same iteration on slopes."""
+    b, ds, at, vectors, push = along.slopes, along.rows, along.at, along.vectors, along.push
+    n, size, mass, middle, end = problem.n, len(s.x0) - 1, matrices.mass, along.middle, along.end
+    f, gap, rate, first, other, heavier = b[0], b[1], b[2], b[3], b[4], b[5]
     r, c, u, w = vectors[0], vectors[1], vectors[2], vectors[3]
     # What changes of the masses do to the difference of both accelerations, once.
     for k in range(size + 1):
@@ -321,24 +317,30 @@ def converge_along(
         u[k] = s.b[k] - s.a[k] if k < n else 0.0
     weigh_along(perturbed, n, at.x0, u, middle, vectors[4:], w)
     for k in range(n):
-        heavier[k] = w[k].imag / STEP
+        heavier[k] = slope_of(w[k])
     before = 0.0
     for _ in range(4 * MOST_ITERATIONS):
         perturb_step(s, ds, at)
         step_residuals(perturbed, n, at, middle, end, r, c, u, w)
         for k in range(size + 1):
-            f[k], gap[k], rate[k] = r[k].imag / STEP, c[k].imag / STEP, u[k].imag / STEP
+            f[k], gap[k], rate[k] = slope_of(r[k]), slope_of(c[k]), slope_of(u[k])
             if k < n:
                 f[k] += push[k]
                 gap[k] += heavier[k]
                 first[k] = ds.b[k] - ds.a[k]
         add_product(n, matrices, mass, first, 1.0, gap)
         _correct(n, size, matrices, h, f, gap, rate, first, other, ds, takes_means(perturbed, middle))
-        # Against the derivatives of the end, which may grow from step to step.
-        norm = _sizes(n, h, scale, f, gap, ds)[0]
-        length = 0.0
-        for k in range(n):
-            length = max(length, (abs(ds.x1[k]) + h * abs(ds.v1[k])) / scale[k])
-        if norm <= 1e-15 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
+        norm = _share(n, h, problem.scale, f, gap, ds)
+        if has_settled(norm, before, 1e-15):
             break
         before = norm
+
+
+@inner
+def _share(n, h, scale, f, gap, ds):
+    """Largest correction of a coordinate's slope, as a part of the slopes at the end, which may grow with the steps."""
+    norm, length = 0.0 * ds.x1[n], 0.0 * ds.x1[n] + 1e-300
+    for k in range(n):
+        norm = maximum(norm, 0.25 * h * h * (size_of(f[k]) + size_of(gap[k])) / scale[k])
+        length = maximum(length, (size_of(ds.x1[k]) + h * size_of(ds.v1[k])) / scale[k])
+    return worst(norm / length)

@@ -8,20 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.arguments import limited
+from dalembert.kernels.duals import Dual
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.midpoint.energy_balance import Balance, balance_workspace
 from dalembert.multibody.integrators.midpoint.lanes_loop import integrate_lanes, run_in_lanes
-from dalembert.multibody.integrators.midpoint.midpoint_loop import MidpointSettings, differentiate, integrate, workspace
+from dalembert.multibody.integrators.midpoint.midpoint_derivatives import KERNELS
+from dalembert.multibody.integrators.midpoint.midpoint_loop import MidpointSettings, integrate, workspace
 from dalembert.multibody.integrators.shared.batch import Batch
-from dalembert.multibody.integrators.shared.consistent import accelerate_along
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.lane_groups import run_groups
 from dalembert.multibody.integrators.shared.matrices import pattern_of
-from dalembert.multibody.integrators.shared.outputs import record_along
+from dalembert.multibody.integrators.shared.outputs import settling_kernels
 from dalembert.multibody.integrators.shared.problem import DONE
 from dalembert.multibody.integrators.shared.run import Run, cut_down, explain
+from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.sample_lanes import solve_samples
 from dalembert.multibody.kernels.states import MotionState, resting
+from dalembert.multibody.model.directions import is_dual, widest
 from dalembert.multibody.model.lane_models import lane_kernels
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.structure import Structure
@@ -64,11 +67,17 @@ class Variational(Integrator):
     newton_tolerance: float = limited(1e-14, unit="", above=0)
     constant_masses = True
     convergence = 2
+    is_balanced = False  #: whether the energy is balanced
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step."""
-        along = [differentiate, accelerate_along, record_along] * derivatives
-        return [integrate, *structure.full.linear_kernels, *along]
+        step = KERNELS[self.is_balanced, derivatives is Dual]
+        return [integrate, *structure.full.linear_kernels, *[step] * bool(derivatives), *settling_kernels(derivatives)]
+
+    @property
+    def takes_duals(self) -> bool:
+        """Whether derivatives along many directions may be dual numbers."""
+        return True
 
     @property
     def takes_lanes(self) -> bool:
@@ -92,14 +101,19 @@ class Variational(Integrator):
     def _one_by_one(self, batch: Batch) -> list[Run]:
         """Runs of samples one after the other."""
         pattern, dout = pattern_of(batch.samples[0].structure), batch.derivatives()
-        runs = []
-        for lowered, edges, start, models in batch:
+        runs, directions = [], batch.directions(takes_duals=self.takes_duals)
+        for lowered, edges, start, models in batch.along(directions):
             log = batch.log(self.step_ends(batch.end, lowered.jumps))
             states, middle = resting(*batch.shape), 0.5 * (edges[0] + edges[1])
-            energy, denergies, balance = self._balance(lowered, batch.perturbed, start, batch.dstates, middle)
+            energy, denergies, balance = self._balance(
+                lowered, batch.perturbed, directions, start, batch.dstates, middle
+            )
             settings = MidpointSettings(float(self.step), float(self.newton_tolerance), self._damped(lowered), energy)
-            calls, complex_calls = ([own.call(), own.call()] for own in (lowered.real, lowered.tangents))
-            scratch = workspace(batch.problem, pattern, calls, complex_calls, balance, denergies, batch.dstates)
+            along, together = widest(lowered.tangents, directions), is_dual(directions)
+            calls, along_calls = ([own.call(), own.call()] for own in (lowered.real, along))
+            scratch = workspace(
+                batch.problem, pattern, calls, along_calls, balance, denergies, batch.dstates, together=together
+            )
             status, time, unknown = integrate(
                 batch.problem, edges, settings, models, start, batch.dstates, states, dout, log, *scratch
             )
@@ -113,7 +127,8 @@ class Variational(Integrator):
         return lowered.dissipates
 
     def _balance(
-        self, lowered: Lowered, perturbed: Sequence[Lowered], start: MotionState, dstarts: MotionState, within: float
-    ) -> tuple[float, np.ndarray, Balance]:
+        self, lowered: Lowered, perturbed: Sequence[Lowered], directions: Sequence[BlockModel], start: MotionState,
+        dstarts: MotionState, within: float,
+    ) -> tuple[float, np.ndarray, Balance]:  # fmt: skip
         """Energy at the start with its derivatives, and what keeps it: here nothing does."""
         return 0.0, np.zeros(len(perturbed)), balance_workspace(len(start.x))

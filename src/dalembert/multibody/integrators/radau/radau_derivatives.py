@@ -1,12 +1,17 @@
 """Derivatives of the converged steps of Radau IIA along directions, and of the states at the ends of steps."""
 
-from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Integers
+from typing import NamedTuple
+
+import numpy as np
+
+from dalembert.kernels.duals import Dual
+from dalembert.kernels.kernel import Compiled, inner
+from dalembert.kernels.views import address_of, reals3
+from dalembert.kernels.words import Address, Integers, Reals
 from dalembert.multibody.integrators.radau.radau_coefficients import Coefficients
 from dalembert.multibody.integrators.radau.radau_newton import (
     MOST_ITERATIONS,
     correct_coordinates,
-    largest,
     take_coordinates,
     take_velocities,
 )
@@ -18,36 +23,116 @@ from dalembert.multibody.integrators.radau.radau_stages import (
     read,
     set_stage_signals,
 )
+from dalembert.multibody.integrators.shared.convergence import has_settled
 from dalembert.multibody.integrators.shared.matrices import Matrices
 from dalembert.multibody.integrators.shared.outputs import Outputs
 from dalembert.multibody.integrators.shared.problem import VELOCITY, IntegrationProblem
-from dalembert.multibody.integrators.shared.settling import settle_along, weigh_along
+from dalembert.multibody.integrators.shared.settling import largest, settle_along, weigh_slopes
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals
-from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.kernels.states import MotionState, MotionStates, copy, row, rows
+from dalembert.multibody.kernels.elementary import size_of
+from dalembert.multibody.kernels.slopes import (
+    Number,
+    SlopeWork,
+    along_kernels,
+    arrays_of,
+    joined,
+    maximum,
+    read_states,
+    slope_of,
+    slope_work,
+    state_of,
+    worst,
+    write_states,
+)
+from dalembert.multibody.kernels.states import MotionStates, copy, row
 
 
-@kernel
-def differentiate(
-    problem: IntegrationProblem, method: Coefficients, matrices: Matrices, directions: Integers, t: float,
-    target: float,
-    within: float, s: Stages, dold: MotionState, dnews: MotionStates, ds: Stages, b: Buffers, complex_works: Integers,
+class Along(NamedTuple):
+    """For derivatives: calls of the stages, what rates of coordinates of a stage miss of its velocities (N + 1,), work,
+    and the addresses of kernels, 0 without directions.
+    """
+
+    works: Integers
+    missed: Reals
+    work: SlopeWork
+    differentiate: Address
+    settle_end: Address
+
+
+def along_workspace(count: int, width: int, works: np.ndarray, directions: int, together: bool) -> Along:
+    """Workspace for derivatives of ``count`` stages; ``works`` are calls of the stages along directions."""
+    kernels = (differentiate_together, settle_end_together) if together else (differentiate, settle_end_along)
+    addresses = [kernel.address if directions else 0 for kernel in kernels]
+    # States at both ends, vectors of systems, stages and their buffers.
+    return Along(works, np.zeros(width), slope_work(width, 12 + 14 * count, 8, together), *addresses)
+
+
+def kernels(derivatives: type | None) -> list[Compiled]:
+    """Return what differentiates steps and their ends, in an arithmetic."""
+    together = differentiate_together, settle_end_together
+    own = together if derivatives is Dual else (differentiate, settle_end_along)
+    return [*own] if derivatives else []
+
+
+def _differentiate(
+    like: Number, problem: IntegrationProblem, method: Coefficients, matrices: Matrices, directions: Integers,
+    t: float, target: float, within: float, s: Stages, dnews: MotionStates, along: Along,
 ) -> None:  # fmt: skip
     """Derivatives of a step along all directions: those of the equations of its stages (`docs/theory/radau.md`)."""
-    h = target - t
-    for d in range(len(directions)):
-        dnew = row(dnews, d)
+    h, m, lanes, (at, slopes) = target - t, len(method.c), along.work.slopes, arrays_of(like, along.work)
+    width = slopes.shape[1]
+    dnew, dold, d, e = state_of(slopes), state_of(slopes[4:]), slopes[12:], slopes[12 + 7 * m :]
+    ds = Stages(d[:m], d[m : 2 * m], d[2 * m : 3 * m], d[3 * m : 4 * m], d[4 * m : 5 * m], d[5 * m : 6 * m], d[6 * m :])
+    # The vectors of systems are twice as long as the others.
+    systems = arrays_of(
+        like, SlopeWork(reals3(address_of(lanes[8:]), 2, 2 * width, lanes.shape[2]), along.work.numbers)
+    )[1]
+    b = Buffers(
+        e[:m], e[m : 2 * m], e[2 * m : 3 * m], e[3 * m : 4 * m], e[4 * m : 5 * m], e[5 * m : 6 * m], e[6 * m :],
+        systems[0], systems[1],
+    )  # fmt: skip
+    # Stages and buffers of slopes are those of the step, so that its formulas serve.
+    for g in range(len(directions)):
+        read_states(dnews, g, lanes)
         copy(dnew, dold)
-        set_stage_signals(method, directions[d], t, h, target, within, complex_works)
-        _converge_along(problem, method, matrices, directions[d], complex_works, h, s, dold, ds, b)
+        set_stage_signals(method, directions[g], t, h, target, within, along.works)
+        _converge_along(problem, method, matrices, directions[g], h, s, dold, along, ds, b, at)
         read(problem.n, ds, dnew)
+        write_states(lanes, g, dnews)
+
+
+def _settle_end(
+    like: Number, problem: IntegrationProblem, matrices: Matrices, directions: Integers, within: float,
+    scratch: Outputs, j: int,
+) -> None:  # fmt: skip
+    """Settle the derivatives of end ``j`` along all directions."""
+    last, work, memory = scratch.last, scratch.complex_work, scratch.slopes.slopes
+    numbers, slopes = arrays_of(like, scratch.slopes)
+    # Column j of the histories: as rows, one a direction.
+    d = last.derivatives
+    dstates = MotionStates(d.x[:, j], d.v[:, j], d.a[:, j], d.w[:, j])
+    for g in range(len(directions)):
+        read_states(dstates, g, memory)
+        set_signals(directions[g], last.times[j], within, work)
+        settle_along(
+            problem, matrices, directions[g], row(last.states, j), state_of(slopes), scratch.moved, work, VELOCITY,
+            numbers, slopes[4:],
+        )  # fmt: skip
+        write_states(memory, g, dstates)
+
+
+differentiate, differentiate_together = along_kernels(_differentiate)
+settle_end_along, settle_end_together = along_kernels(_settle_end)
 
 
 @inner
-def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, ds, b):
-    """Derivatives ``ds`` of the converged stages along a direction, by the same iteration on imaginary parts."""
+def _converge_along(problem, method, matrices, perturbed, h, s, dstart, along, ds, b, at):
+    """Derivatives ``ds`` of the converged stages along directions, by the same iteration on slopes.
+
+    ``ds`` and ``b`` are stages and buffers of slopes, ``at`` (8, N + 1) numbers along directions.
+    """
     n, size, count = problem.n, len(dstart.x) - 1, len(method.c)
-    at = b.complex_state
+    missed, works = along.missed, along.works
     # The derivative of the stages solves the same linear system for every direction. Its exact matrix couples all
     # stages, so the split iteration of the step serves again, with the matrices that the step has.
     begin(n, h, method, dstart, ds)
@@ -56,45 +141,38 @@ def _converge_along(problem, method, matrices, perturbed, works, h, s, dstart, d
     for _ in range(4 * MOST_ITERATIONS):
         for i in range(count):
             for k in range(size + 1):
-                at[0, k] = complex(s.x[i, k], STEP * ds.x[i, k])
-                at[1, k] = complex(s.v[i, k], STEP * ds.v[i, k])
-                at[2, k] = complex(s.a[i, k], STEP * ds.a[i, k])
-                at[3, k] = complex(s.u[i, k] - s.v[i, k], STEP * (ds.u[i, k] - ds.v[i, k]))
-                if k >= n:
-                    at[3, k] = complex(s.m[i, k], STEP * ds.m[i, k])
-            # Exact residuals along the direction by the complex step: the matrices only decide how fast the iteration
-            # converges.
-            residual(perturbed, n, at[0], at[1], at[2], works[i], 1.0, at[4])
-            weigh_along(perturbed, n, at[0], at[3], works[i], at[7:], at[5])
+                at[0, k], at[1, k] = joined(s.x[i, k], ds.x[i, k]), joined(s.v[i, k], ds.v[i, k])
+                at[2, k] = joined(s.a[i, k], ds.a[i, k])
+                missed[k] = s.u[i, k] - s.v[i, k] if k < n else s.m[i, k]
+                b.moved[i, k] = ds.u[i, k] - ds.v[i, k] if k < n else ds.m[i, k]
+            # Exact residuals along the directions: the matrices only decide how fast the iteration converges.
+            residual(perturbed, n, at[0], at[1], at[2], works[i], 1.0, at[3])
             for k in range(size + 1):
-                b.motion[i, k], b.weighed[i, k] = at[4, k].imag / STEP, at[5, k].imag / STEP
+                b.motion[i, k] = slope_of(at[3, k])
+            speed = largest(s.v[i], 0, n)
+            weigh_slopes(perturbed, n, matrices, at[0], missed, b.moved[i], speed, works[i], at[3:], b.weighed[i])
         correct_coordinates(n, size, method, matrices, h, b)
         take_coordinates(n, size, h, method, dstart, b, ds)
         for i in range(count):
             for k in range(size + 1):
-                at[0, k] = complex(s.x[i, k], STEP * ds.x[i, k])
-                at[1, k] = complex(s.v[i, k], STEP * ds.v[i, k])
+                at[0, k], at[1, k] = joined(s.x[i, k], ds.x[i, k]), joined(s.v[i, k], ds.v[i, k])
             constraint_rates(perturbed, n, at[0], at[1], at[2], works[i], at[4], at[5])
             for k in range(size + 1):
-                b.rate[i, k] = at[4, k].imag / STEP
+                b.rate[i, k] = slope_of(at[4, k])
         take_velocities(n, size, method, matrices, h, dstart, b, ds)
-        norm = largest(n, problem.scale, b.moved)[0]
-        length = largest(n, problem.scale, ds.dx)[0]
-        # Relative to the derivatives of the coordinates; below 1e-10, corrections that no longer shrink are rounding.
-        if norm <= 1e-14 * length or not norm < 1e100 or (norm <= 1e-10 * length and norm > 0.5 * before):
+        norm = _share(n, problem.scale, b.moved, ds.dx)
+        if has_settled(norm, before, 1e-14):
             break
         before = norm
 
 
-@kernel
-def settle_end_along(
-    problem: IntegrationProblem, matrices: Matrices, directions: Integers, within: float, scratch: Outputs, j: int
-) -> None:
-    """Settle the derivatives of end ``j`` along all directions."""
-    last, work = scratch.last, scratch.complex_work
-    for d in range(len(directions)):
-        set_signals(directions[d], last.times[j], within, work)
-        state, dstate = row(last.states, j), row(rows(last.derivatives, d), j)
-        settle_along(
-            problem, matrices, directions[d], state, dstate, scratch.moved, work, scratch.complex_state, VELOCITY
-        )
+@inner
+def _share(n, scale, moved, ahead):
+    """Largest correction of a coordinate's slope, as a part of the largest way of one in the step."""
+    # Numbers of the kind of slopes; without a way, nothing but zero corrections are small.
+    norm, length = 0.0 * moved[0, 0], 0.0 * moved[0, 0] + 1e-300
+    for i in range(len(moved)):
+        for k in range(n):
+            norm = maximum(norm, size_of(moved[i, k]) / scale[k])
+            length = maximum(length, size_of(ahead[i, k]) / scale[k])
+    return worst(norm / length)

@@ -10,17 +10,17 @@ from dalembert.arguments import limited
 from dalembert.errors import InputError, SolveError
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.integrators.radau.radau_coefficients import coefficients
-from dalembert.multibody.integrators.radau.radau_derivatives import differentiate, settle_end_along
+from dalembert.multibody.integrators.radau.radau_derivatives import kernels
 from dalembert.multibody.integrators.radau.radau_loop import integrate
 from dalembert.multibody.integrators.radau.radau_workspace import RadauSettings, workspace
 from dalembert.multibody.integrators.shared.batch import Batch
-from dalembert.multibody.integrators.shared.consistent import accelerate_along
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.integrators.shared.matrices import pattern_of
-from dalembert.multibody.integrators.shared.outputs import record_along
+from dalembert.multibody.integrators.shared.outputs import settling_kernels
 from dalembert.multibody.integrators.shared.problem import DONE, INEXACT
 from dalembert.multibody.integrators.shared.run import Run, cut_down, explain, users_error
 from dalembert.multibody.kernels.states import resting
+from dalembert.multibody.model.directions import is_dual, widest
 from dalembert.multibody.model.lowered import Lowered, slip_scale
 from dalembert.multibody.model.structure import Structure
 from dalembert.multibody.start.singular_positions import singular_position
@@ -97,10 +97,14 @@ class RadauIIA(Integrator):
     def convergence(self) -> int:
         return self.order
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
         """The loop with its linear systems, and what differentiates a step and an output."""
-        along = [differentiate, settle_end_along, record_along, accelerate_along]
-        return [integrate, *structure.full.linear_kernels, *along * derivatives]
+        return [integrate, *structure.full.linear_kernels, *kernels(derivatives), *settling_kernels(derivatives)]
+
+    @property
+    def takes_duals(self) -> bool:
+        """Whether derivatives along many directions may be dual numbers."""
+        return True
 
     def run(self, batch: Batch) -> list[Run]:
         """Runs of samples in one compiled loop that leaves the interpreter's lock free."""
@@ -108,11 +112,13 @@ class RadauIIA(Integrator):
         first = batch.samples[0]
         pattern, method = pattern_of(first.structure), coefficients(self.stages)
         fixed = self.step_ends(batch.end, first.jumps)
-        calls = [[model.call() for _ in range(1 + self.stages)] for model in (first.real, first.tangents)]
-        spare = workspace(problem, method, pattern, batch.dstates, *calls)
+        directions = batch.directions(takes_duals=self.takes_duals)
+        models = first.real, widest(first.tangents, directions)
+        calls, along_calls = ([model.call() for _ in range(1 + self.stages)] for model in models)
+        spare = workspace(problem, method, pattern, batch.dstates, calls, along_calls, is_dual(directions))
         run = integrate.given(problem, method, batch.dstates, dout, *spare)
         runs = []
-        for lowered, edges, start, models in batch:
+        for lowered, edges, start, models in batch.along(directions):
             log, states = batch.log(fixed), resting(*batch.shape)
             slow = _STICKING * slip_scale(lowered) / self.tolerance
             steps = self.step or 0.0, self.tolerance, self.newton_tolerance, self.most_steps

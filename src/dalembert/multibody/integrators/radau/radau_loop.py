@@ -5,9 +5,9 @@ import numpy as np
 from dalembert.kernels.kernel import inner, kernel
 from dalembert.kernels.words import Reals
 from dalembert.multibody.integrators.radau.radau_coefficients import Coefficients
-from dalembert.multibody.integrators.radau.radau_derivatives import differentiate, settle_end_along
+from dalembert.multibody.integrators.radau.radau_derivatives import Along, differentiate, settle_end_along
 from dalembert.multibody.integrators.radau.radau_step import attempt, speed_of
-from dalembert.multibody.integrators.radau.radau_workspace import Along, RadauSettings, RadauStep
+from dalembert.multibody.integrators.radau.radau_workspace import RadauSettings, RadauStep
 from dalembert.multibody.integrators.shared.consistent import Consistency, accelerate
 from dalembert.multibody.integrators.shared.convergence import HALVINGS
 from dalembert.multibody.integrators.shared.ends import append, support
@@ -161,7 +161,7 @@ def integrate(
             if len(models.directions) > 0:
                 _differentiate_at(
                     along.differentiate, problem, method, matrices, models.directions, t, target, within, step.s,
-                    along.dold, dstates, along.ds, step.b, along.works,
+                    dstates, along,
                 )  # fmt: skip
             arrived, speed, before, earlier, taken, least = True, fastest, h, before, h, np.inf
             note_step(log, iterations, target)

@@ -25,10 +25,13 @@ from dalembert.multibody.integrators.shared.matrices import (
     inverse,
     product,
     solve_complex,
+    times,
 )
 from dalembert.multibody.integrators.shared.settling import weigh
 from dalembert.multibody.kernels.assembly import constraint_rates, residual
+from dalembert.multibody.kernels.elementary import size_of
 from dalembert.multibody.kernels.linear import solve
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
 
 MOST_ITERATIONS = 14
 _VISIBLE = 0.03  # part of the tolerance from which corrections hardly change the estimated error
@@ -68,7 +71,7 @@ def correct_coordinates(n, size, method, matrices, h, b):
     square = real * real
     for k in range(size):  # what the velocities lack in weight acts as an inertial force
         given[k] = change_x[0, k] + real * change_u[0, k] if k < n else square * change_x[0, k]
-    solve(matrices.pattern.layout, matrices.real, given, answer)
+    solve_slopes(matrices.pattern.layout, matrices.real, given, answer)
     for k in range(size):
         if k < n:
             change_x[0, k], change_u[0, k], change_a[0, k] = answer[k] / square, answer[k] / real, answer[k]
@@ -79,18 +82,20 @@ def correct_coordinates(n, size, method, matrices, h, b):
         pair, i, j = _scaled(pairs[p], h), 2 * p + 1, 2 * p + 2
         double, back = product(pair, pair), inverse(pair)
         for k in range(size):
-            z = complex(change_x[i, k], change_x[j, k])
-            z = z + product(pair, complex(change_u[i, k], change_u[j, k])) if k < n else product(double, z)
-            given[k], given[size + k] = z.real, z.imag
+            if k < n:
+                x, y = times(pair, change_u[i, k], change_u[j, k])
+                given[k], given[size + k] = change_x[i, k] + x, change_x[j, k] + y
+            else:
+                given[k], given[size + k] = times(double, change_x[i, k], change_x[j, k])
         solve_complex(matrices, p, given, answer)
         for k in range(size):
-            z = complex(answer[k], answer[size + k])
+            x, y = answer[k], answer[size + k]
             if k < n:
-                change_a[i, k], change_a[j, k] = z.real, z.imag
-                z = product(back, z)
-                change_u[i, k], change_u[j, k] = z.real, z.imag
-                z = product(back, z)
-            change_x[i, k], change_x[j, k] = z.real, z.imag
+                change_a[i, k], change_a[j, k] = x, y
+                x, y = times(back, x, y)
+                change_u[i, k], change_u[j, k] = x, y
+                x, y = times(back, x, y)
+            change_x[i, k], change_x[j, k] = x, y
 
 
 @inner
@@ -123,11 +128,11 @@ def take_velocities(n, size, method, matrices, h, start, b, s):
     for i in range(len(x)):
         for k in range(size):
             given[k] = -weighed[i, k] if k < n else rate[i, k]
-        solve(matrices.pattern.layout, matrices.rigid, given, answer)
+        solve_slopes(matrices.pattern.layout, matrices.rigid, given, answer)
         for k in range(size):
             change_x[i, k] = answer[k]
             if k < n:
-                moved[i, k] = abs(moved[i, k]) + h * abs(answer[k])
+                moved[i, k] = size_of(moved[i, k]) + h * size_of(answer[k])
             else:
                 m[i, k] += answer[k]
     # What the projection changes of the velocities, as a change of the rates of their polynomial and of the

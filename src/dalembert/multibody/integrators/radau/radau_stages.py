@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner
-from dalembert.kernels.words import Complexes2, Reals, Reals2
+from dalembert.kernels.words import Reals, Reals2
 from dalembert.multibody.kernels.assembly import set_signals
 
 
@@ -40,7 +40,6 @@ class Buffers(NamedTuple):
     moved: Reals2
     given: Reals
     answer: Reals
-    complex_state: Complexes2
 
 
 def stages(count: int, width: int) -> Stages:
@@ -52,8 +51,7 @@ def buffers(count: int, width: int) -> Buffers:
     """Workspace for a step; the vectors are as long as a complex system."""
     motion, weighed, rate, change_x, change_u, change_a, moved = np.zeros((7, count, width))
     given, answer = np.zeros((2, 2 * width))
-    complex_state = np.zeros((10, width), complex)
-    return Buffers(motion, weighed, rate, change_x, change_u, change_a, moved, given, answer, complex_state)
+    return Buffers(motion, weighed, rate, change_x, change_u, change_a, moved, given, answer)
 
 
 @inner

@@ -6,7 +6,7 @@ import numpy as np
 
 from dalembert.kernels.words import Address, Integers, Reals2
 from dalembert.multibody.integrators.radau.radau_coefficients import Coefficients
-from dalembert.multibody.integrators.radau.radau_derivatives import differentiate, settle_end_along
+from dalembert.multibody.integrators.radau.radau_derivatives import Along, along_workspace
 from dalembert.multibody.integrators.radau.radau_stages import Buffers, Stages, buffers, stages
 from dalembert.multibody.integrators.shared.consistent import Consistency, consistency
 from dalembert.multibody.integrators.shared.matrices import Matrices, Pattern, scratch
@@ -47,16 +47,6 @@ class RadauStep(NamedTuple):
     complex_work: Address
 
 
-class Along(NamedTuple):
-    """For derivatives: a state, stages, calls of the stages, and the addresses of kernels, 0 without directions."""
-
-    dold: MotionState
-    ds: Stages
-    works: Integers
-    differentiate: Address
-    settle_end: Address
-
-
 class RadauWorkspace(NamedTuple):
     """Work of a run: the state, its step, outputs, derivatives, consistent accelerations.
 
@@ -74,24 +64,21 @@ class RadauWorkspace(NamedTuple):
 
 def workspace(
     problem: IntegrationProblem, method: Coefficients, pattern: Pattern, dstates: MotionState, calls: list[Call],
-    complex_calls: list[Call],
+    along_calls: list[Call], together: bool,
 ) -> RadauWorkspace:  # fmt: skip
-    """Workspace for a run; ``calls`` in real and in complex numbers: one a stage, and one more before them."""
+    """Workspace for a run; ``calls`` in real numbers and along directions: one a stage, and one more before them."""
     directions, width = dstates.x.shape
     count = len(method.c)
-    works, complex_works = (np.array([call.address for call in own]) for own in (calls, complex_calls))
-    work, complex_work = int(works[0]), int(complex_works[0])
+    works, along_works = (np.array([call.address for call in own]) for own in (calls, along_calls))
+    work, along_work = int(works[0]), int(along_works[0])
     matrices, apart = scratch(pattern, len(method.pairs)), scratch(pattern, 0)
     if not pattern.varies:
         apart = apart._replace(heavy=matrices.heavy, mass=matrices.mass)  # which do not change in a motion
-    out = outputs(_ENDS, dstates, work, complex_work)
+    out = outputs(_ENDS, dstates, work, along_work, together)
     step = RadauStep(
         stages(count, width), stages(count, width), buffers(count, width), np.zeros((count + 1, 2 * count)),
-        out.moved[2:], works[1:], complex_work,
+        out.moved[2:], works[1:], along_work,
     )  # fmt: skip
-    along = Along(
-        resting(width), stages(count, width), complex_works[1:],
-        *(kernel.address if directions else 0 for kernel in (differentiate, settle_end_along)),
-    )  # fmt: skip
-    consistent = consistency(problem, work, complex_work, directions)
+    along = along_workspace(count, width, along_works[1:], directions, together)
+    consistent = consistency(problem, work, along_work, directions, together)
     return RadauWorkspace(resting(width), matrices, apart, step, out, along, consistent)

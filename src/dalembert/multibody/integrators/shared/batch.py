@@ -9,9 +9,10 @@ import numpy as np
 from dalembert.errors import SolveError
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem, Log, SampleModels
 from dalembert.multibody.integrators.shared.run import Run
-from dalembert.multibody.kernels.block_table import addresses
+from dalembert.multibody.kernels.block_table import BlockModel, addresses
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.states import MotionState, resting, row
+from dalembert.multibody.model.directions import are_many, dual_models
 from dalembert.multibody.model.lowered import Lowered
 from dalembert.multibody.model.turns import CountedAngle, TurnCounter
 
@@ -55,11 +56,26 @@ class Batch:
         counted = [counter.begin().address for counter in self.counters]
         return np.array(counted or [0] * len(self.samples), dtype=np.int64)
 
+    def directions(self, *, takes_duals: bool = False) -> list[BlockModel]:
+        """Models along the directions of differentiation, for a method that ``takes_duals`` or does not.
+
+        They are in dual numbers, with eight directions each, where that pays; else complex ones.
+        """
+        if takes_duals and are_many(self.samples[0], len(self.perturbed)):
+            models = dual_models(self.samples[0], self.perturbed)
+        else:
+            models = [entry.complex_model for entry in self.perturbed]
+        return [model.need("rates") for model in models]
+
     def __iter__(self) -> Iterator[Sample]:
-        directions = addresses(entry.complex_model.need("rates") for entry in self.perturbed)
+        return self.along(self.directions())
+
+    def along(self, directions: Sequence[BlockModel]) -> Iterator[Sample]:
+        """Return each sample, with models along directions."""
+        along = addresses(directions)
         for number, (lowered, turns) in enumerate(zip(self.samples, self.begin_counting().tolist(), strict=True)):
             edges = self.problem.edges[number, : self.problem.stretches[number] + 1]
-            models = SampleModels(lowered.real.need("rates").address, lowered.tangents.address, directions, turns)
+            models = SampleModels(lowered.real.need("rates").address, lowered.tangents.address, along, turns)
             yield Sample(lowered, edges, row(self.states, number), models)
 
     @property

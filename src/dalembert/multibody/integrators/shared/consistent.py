@@ -9,17 +9,29 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes2, Integers, Reals, Reals2
+from dalembert.kernels.words import Address, Integers, Reals, Reals2
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import weigh_along
 from dalembert.multibody.kernels.assembly import constraint_rates, residual, set_signals, tangent
-from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import Factors, factorise, solve, storage
-from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, perturb, row, subtract
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
+from dalembert.multibody.kernels.slopes import (
+    Number,
+    SlopeWork,
+    along_kernels,
+    arrays_of,
+    perturb,
+    read_states,
+    slope_of,
+    slope_work,
+    state_of,
+    write_states,
+)
+from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, subtract
 
 
 class Consistency(NamedTuple):
-    """Work of consistent accelerations: calls in real and in complex numbers, a matrix, and vectors.
+    """Work of consistent accelerations: calls in real numbers and along directions, a matrix, and vectors.
 
     ``along``: address of the kernel for the derivatives, 0 if there are none.
     """
@@ -29,16 +41,19 @@ class Consistency(NamedTuple):
     exact: Factors
     constraints: Reals
     vectors: Reals2
-    complex_state: Complexes2
+    slopes: SlopeWork
     along: Address
 
 
-def consistency(problem: IntegrationProblem, work: int, complex_work: int, directions: int) -> Consistency:
-    """Workspace for consistent accelerations."""
+def consistency(
+    problem: IntegrationProblem, work: int, along_work: int, directions: int, together: bool = False
+) -> Consistency:
+    """Workspace for consistent accelerations, with derivatives along directions one by one, or ``together``."""
     exact, width = storage(problem.exact_layout), problem.exact_layout.size + 1
-    along = accelerate_along.address if directions else 0
+    kernel = accelerate_together if together else accelerate_along
     constraints, vectors = np.zeros(len(exact.matrix)), np.zeros((4, width))
-    return Consistency(work, complex_work, exact, constraints, vectors, np.zeros((9, width), complex), along)
+    slopes = slope_work(width, 6, 9, together)
+    return Consistency(work, along_work, exact, constraints, vectors, slopes, kernel.address if directions else 0)
 
 
 @inner
@@ -106,50 +121,53 @@ def accelerate(
     return True
 
 
-@kernel
-def accelerate_along(
-    problem: IntegrationProblem, directions: Integers, t: float, within: float, state: MotionState,
-    dstates: MotionStates,
-    c: Consistency, projects: bool,
+def _accelerate_along(
+    like: Number, problem: IntegrationProblem, directions: Integers, t: float, within: float, state: MotionState,
+    dstates: MotionStates, c: Consistency, projects: bool,
 ) -> None:  # fmt: skip
     """Derivatives of consistent accelerations, or (``projects``) of the projected velocities, along all directions."""
-    for d in range(len(directions)):
-        set_signals(directions[d], t, within, c.complex_work)
+    # The rows of a group lie side by side in the work, for as long as it is computed.
+    numbers, slopes = arrays_of(like, c.slopes)
+    dstate = state_of(slopes)
+    for g in range(len(directions)):
+        read_states(dstates, g, c.slopes.slopes)
+        set_signals(directions[g], t, within, c.complex_work)
         if projects:
-            _project_along(problem, directions[d], state, row(dstates, d), c)
+            _project_along(problem, directions[g], state, dstate, c, numbers, slopes[4:])
         else:
-            differentiate_acceleration(problem, directions[d], state, row(dstates, d), c)
+            differentiate_acceleration(problem, directions[g], state, dstate, c, numbers, slopes[4:])
+        write_states(c.slopes.slopes, g, dstates)
 
 
+accelerate_along, accelerate_together = along_kernels(_accelerate_along)
 _along_at = accelerate_along.at
 
 
 @inner
-def differentiate_acceleration(problem, perturbed, state, dstate, c):
-    """Derivative of accelerations and multipliers along one direction, by the matrix in ``c``."""
-    n, complex_state, delta, answer = problem.n, c.complex_state, c.vectors[0], c.vectors[1]
-    x, v, a, r = complex_state[0], complex_state[1], complex_state[2], complex_state[3]
-    perturb(n, state, dstate, complex_state)
+def differentiate_acceleration(problem, perturbed, state, dstate, c, numbers, slopes):
+    """Derivative of accelerations and multipliers along directions, by the matrix in ``c``."""
+    n, x, v, a, r, delta, answer = problem.n, numbers[0], numbers[1], numbers[2], numbers[3], slopes[0], slopes[1]
+    # The equations are linear in accelerations and multipliers: one solution is the derivative.
+    perturb(n, state, dstate, numbers)
     residual(perturbed, n, x, v, a, c.complex_work, 1.0, r)
-    constraint_rates(perturbed, n, x, v, a, c.complex_work, complex_state[4], r)
+    constraint_rates(perturbed, n, x, v, a, c.complex_work, numbers[4], r)
     for i in range(len(state.x) - 1):
-        delta[i] = r[i].imag / STEP
-    solve(problem.exact_layout, c.exact, delta, answer)
+        delta[i] = slope_of(r[i])
+    solve_slopes(problem.exact_layout, c.exact, delta, answer)
     subtract(n, answer, dstate)
 
 
 @inner
-def _project_along(problem, perturbed, state, dstate, c):
-    """The derivative of v - w, by the equations of the projection in complex numbers."""
-    n, complex_state, answer, rate, w = problem.n, c.complex_state, c.vectors[1], c.vectors[2], c.vectors[3]
-    x, drate, f, weighed = complex_state[0], complex_state[3], complex_state[4], complex_state[5]
-    perturb(n, state, dstate, complex_state)
-    constraint_rates(perturbed, n, x, complex_state[1], complex_state[2], c.complex_work, drate, f)
+def _project_along(problem, perturbed, state, dstate, c, numbers, slopes):
+    """The derivative of v - w, by the equations of the projection."""
+    n, w, x, drate, f, weighed = problem.n, c.vectors[3], numbers[0], numbers[3], numbers[4], numbers[5]
+    perturb(n, state, dstate, numbers)
+    constraint_rates(perturbed, n, x, numbers[1], numbers[2], c.complex_work, drate, f)
     for i in range(len(w)):
         weighed[i] = w[i]
-    weigh_along(perturbed, n, x, weighed, c.complex_work, complex_state[6:], f)
+    weigh_along(perturbed, n, x, weighed, c.complex_work, numbers[6:], f)
     for i in range(len(w) - 1):
-        answer[i] = (f[i].imag if i < n else -drate[i].imag) / STEP
-    solve(problem.exact_layout, c.exact, answer, rate)
+        slopes[0][i] = slope_of(f[i]) if i < n else -slope_of(drate[i])
+    solve_slopes(problem.exact_layout, c.exact, slopes[0], slopes[1])
     for i in range(n):
-        dstate.v[i] += rate[i]
+        dstate.v[i] += slopes[1][i]

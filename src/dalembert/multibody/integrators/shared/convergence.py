@@ -5,7 +5,7 @@ are in balance. Where friction has reached its limit, the matrix of sticking tur
 corrections, r / (D h): without balance the iteration is far from its end, and a step that ends there sticks too long.
 """
 
-from dalembert.kernels.kernel import inlined
+from dalembert.kernels.kernel import inlined, inner
 
 HALVINGS = 16
 """How often a fixed step is halved on which Newton's iteration does not converge."""
@@ -32,3 +32,17 @@ def largest_entry(values, begin, end):
     for k in range(begin, end):
         size = max(size, abs(values[k]))
     return size
+
+
+@inner
+def has_settled(norm, before, tolerance):
+    """Whether an iteration on slopes ends. ``norm``: the largest correction, as a part of the slopes; ``before``: the
+    same in the iteration before, 0 in the first.
+    """
+    if norm <= tolerance or not norm < 1e100:
+        return True
+    if before == 0.0:
+        return False
+    # The sum of the corrections to come is norm rate / (1 - rate) with rate = norm / before. Below 1e-10, corrections
+    # that no longer shrink are rounding.
+    return (norm < before and norm * norm <= (before - norm) * tolerance) or (norm <= 1e-10 and norm > 0.5 * before)

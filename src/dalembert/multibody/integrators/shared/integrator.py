@@ -92,8 +92,8 @@ class Integrator(Checked, ABC):
         told = (f"{item.name}={value!r}" for item, value in given if value != item.default)
         return f"{type(self).__name__}({', '.join(told)})"
 
-    def kernels(self, structure: Structure, derivatives: bool) -> list[Compiled]:
-        """Kernels of the method, without those of components; and those for derivatives along directions."""
+    def kernels(self, structure: Structure, derivatives: type | None = None) -> list[Compiled]:
+        """Kernels of the method, without those of components; and those for derivatives in that arithmetic."""
         return []
 
     @property

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.lanes import WIDTH
 from dalembert.kernels.words import Address, Integers, Integers2, Reals, Reals2
 from dalembert.multibody.integrators.shared.problem import IntegrationProblem
 from dalembert.multibody.kernels.assembly import set_signals, tangent
@@ -16,9 +17,9 @@ from dalembert.multibody.kernels.linear import (
     dense_layout,
     factorise,
     padded,
-    solve,
     storage,
 )
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
 from dalembert.multibody.kernels.records import call_at, model_at
 from dalembert.multibody.kernels.states import MotionState, clear
 from dalembert.multibody.model.structure import Structure
@@ -90,9 +91,10 @@ def pattern_of(structure: Structure) -> Pattern:
 def scratch(pattern: Pattern, pairs: int) -> Matrices:
     """Workspace for the matrices of a motion, with as many complex systems as ``pairs``."""
     entries, layout = len(pattern.rows), pattern.double_layout
+    room = layout.size + 3 * layout.reach
     doubles = Doubles(
         np.zeros((pairs, layout.lead * layout.size)), np.zeros((pairs, layout.size), np.int64),
-        np.zeros((pairs, layout.size), np.int64), np.zeros((pairs, layout.size + 3 * layout.reach)),
+        np.zeros((pairs, layout.size), np.int64), np.zeros((pairs, WIDTH * room)),
     )  # fmt: skip
     return Matrices(
         pattern, np.zeros(entries + 1, np.int64), np.zeros(entries), np.zeros(entries), np.zeros(entries),
@@ -163,7 +165,13 @@ def _factorise(n, matrices, first, second, factors):
 @inlined
 def product(a, b):
     """Product of complex numbers; Numba's own looks at infinities, which takes long to compile, and to run."""
-    return complex(a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real)
+    return complex(*times(a, b.real, b.imag))
+
+
+@inlined
+def times(a, x, y):
+    """Real and imaginary part of a complex number times x + iy, which are real numbers or lanes."""
+    return a.real * x - a.imag * y, a.real * y + a.imag * x
 
 
 @inlined
@@ -205,7 +213,7 @@ def factorise_complex(n, matrices, p, s):
 @inner
 def solve_complex(matrices, p, given, answer):
     """Solve with the complex system ``p``: real parts, then imaginary ones."""
-    solve(matrices.pattern.double_layout, _double(matrices, p), given, answer)
+    solve_slopes(matrices.pattern.double_layout, _double(matrices, p), given, answer)
 
 
 @inner

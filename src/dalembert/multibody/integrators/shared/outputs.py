@@ -4,40 +4,55 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import kernel
-from dalembert.kernels.words import Address, Complexes2, Integers, Reals2, Reals3
+from dalembert.kernels.duals import Dual
+from dalembert.kernels.kernel import Compiled, kernel
+from dalembert.kernels.words import Address, Integers, Reals2, Reals3
+from dalembert.multibody.integrators.shared.consistent import accelerate_along, accelerate_together
 from dalembert.multibody.integrators.shared.ends import Ends, ends, interpolate_ends, support, weigh_ends, write
 from dalembert.multibody.integrators.shared.matrices import Matrices, renew
 from dalembert.multibody.integrators.shared.problem import POSITION, IntegrationProblem, SampleModels
 from dalembert.multibody.integrators.shared.settling import settle, settle_along
 from dalembert.multibody.kernels.assembly import set_signals
+from dalembert.multibody.kernels.slopes import (
+    Number,
+    SlopeWork,
+    along_kernels,
+    arrays_of,
+    read_states,
+    slope_work,
+    state_of,
+    write_states,
+)
 from dalembert.multibody.kernels.states import Histories, MotionState, MotionStates, copy, resting, row, rows
 from dalembert.multibody.model.turns import count_turns
 
 
 class Outputs(NamedTuple):
-    """Work of outputs: ends of the last steps, a state between them and its derivative, weights (4, ends, 3), calls.
-    ``moved`` and ``complex_state`` are workspace, see `settle_along`. ``along``: address of `record_along`, 0 if there
-    are no directions.
+    """Work of outputs: ends of the last steps, a state between them, weights (4, ends, 3), calls.
+    ``moved`` and ``slopes`` are workspace, see `settle_along`. ``along``: address of
+    `record_along` or of `record_together`, 0 if there are no directions.
     """
 
     last: Ends
     between: MotionState
-    dbetween: MotionState
     weights: Reals3
     moved: Reals2
     work: Address
     complex_work: Address
-    complex_state: Complexes2
+    slopes: SlopeWork
     along: Address
 
 
-def outputs(count: int, dstates: MotionState, work: int, complex_work: int) -> Outputs:
-    """Workspace for outputs between ``count`` ends, with derivatives as ``dstates`` (directions, N + 1)."""
+def outputs(count: int, dstates: MotionState, work: int, complex_work: int, together: bool) -> Outputs:
+    """Workspace for outputs between ``count`` ends, with derivatives as ``dstates`` (directions, N + 1).
+
+    Directions are taken one by one, or eight ``together``.
+    """
     directions, width = dstates.x.shape
+    kernel = record_together if together else record_along
     return Outputs(
-        ends(count, dstates), resting(width), resting(width), np.zeros((4, count, 3)), np.zeros((6, width)), work,
-        complex_work, np.zeros((10, width), complex), record_along.address if directions else 0,
+        ends(count, dstates), resting(width), np.zeros((4, count, 3)), np.zeros((6, width)), work, complex_work,
+        slope_work(width, 8, 8, together), kernel.address if directions else 0,
     )  # fmt: skip
 
 
@@ -81,29 +96,38 @@ def record(
     return True
 
 
-@kernel
-def record_along(
-    problem: IntegrationProblem, matrices: Matrices, directions: Integers, scratch: Outputs, whole: bool, oldest: int,
-    within: float,
-    dout: Histories, due: int,
+def _record_along(
+    like: Number, problem: IntegrationProblem, matrices: Matrices, directions: Integers, scratch: Outputs,
+    whole: bool, oldest: int, within: float, dout: Histories, due: int,
 ) -> None:  # fmt: skip
     """Write the derivatives of the state at an output time along all directions.
 
     ``whole``: at the end of the step; else between ends from ``oldest`` on, with the weights and moves of the state.
     """
-    t, ends, dstate = problem.times[due], scratch.last, scratch.dbetween
-    for d in range(len(directions)):
-        derivatives = rows(ends.derivatives, d)
+    memory, (numbers, slopes) = scratch.slopes.slopes, arrays_of(like, scratch.slopes)
+    dstates = MotionStates(dout.x[:, due], dout.v[:, due], dout.a[:, due], dout.w[:, due])
+    # Interpolated slopes have left the constraints as the interpolated state had; both are moved back alike.
+    for d in range(len(dout.x)):
+        derivatives = rows(scratch.last.derivatives, d)
         if whole:
-            copy(row(derivatives, len(ends.times) - 1), dstate)
+            write(row(derivatives, len(scratch.last.times) - 1), row(dstates, d))
         else:
-            interpolate_ends(problem.n, oldest, scratch.weights, derivatives, dstate)
-            set_signals(directions[d], t, within, scratch.complex_work)
-            settle_along(
-                problem, matrices, directions[d], scratch.between, dstate, scratch.moved, scratch.complex_work,
-                scratch.complex_state, POSITION,
-            )  # fmt: skip
-        write(dstate, row(rows(dout, d), due))
+            interpolate_ends(problem.n, oldest, scratch.weights, derivatives, row(dstates, d))
+    for g in range(0 if whole else len(directions)):
+        read_states(dstates, g, memory)
+        set_signals(directions[g], problem.times[due], within, scratch.complex_work)
+        settle_along(
+            problem, matrices, directions[g], scratch.between, state_of(slopes), scratch.moved, scratch.complex_work,
+            POSITION, numbers, slopes[4:],
+        )  # fmt: skip
+        write_states(memory, g, dstates)
 
 
+record_along, record_together = along_kernels(_record_along)
 _record_along_at = record_along.at
+
+
+def settling_kernels(derivatives: type | None) -> list[Compiled]:
+    """Return what differentiates states that are settled at starts and outputs, in an arithmetic."""
+    own = (accelerate_together, record_together) if derivatives is Dual else (accelerate_along, record_along)
+    return [*own] if derivatives else []

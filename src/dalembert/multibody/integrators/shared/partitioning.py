@@ -14,7 +14,8 @@ from dalembert.multibody.integrators.shared.problem import POSITION, VELOCITY, I
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, set_signals, tangent
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.linear import DENSE, Factors, factorise, resized, solve, storage
-from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, perturb, row
+from dalembert.multibody.kernels.slopes import perturb
+from dalembert.multibody.kernels.states import MotionState, MotionStates, clear, row
 
 DEPENDENT = 1e-9  # pivot, against the first one, of a constraint that follows from the others
 _MOST_ITERATIONS = 20

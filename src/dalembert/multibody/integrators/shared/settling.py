@@ -6,17 +6,20 @@ for derivatives, too: they are iterated after the state, with the same factorisa
 """
 
 from dalembert.kernels.kernel import inner, kernel
-from dalembert.kernels.words import Address, Complexes2, Reals2
+from dalembert.kernels.words import Address, Reals2
 from dalembert.multibody.integrators.shared.matrices import Matrices, add_inertia
 from dalembert.multibody.integrators.shared.problem import ACCELERATION, POSITION, VELOCITY, IntegrationProblem
 from dalembert.multibody.kernels.assembly import constraint_forces, constraint_rates, residual
-from dalembert.multibody.kernels.elementary import STEP
+from dalembert.multibody.kernels.elementary import size_of
 from dalembert.multibody.kernels.linear import solve
-from dalembert.multibody.kernels.states import MotionState, perturb
+from dalembert.multibody.kernels.linear_lanes import solve_slopes
+from dalembert.multibody.kernels.slopes import joined, maximum, perturb, slope_of, worst
+from dalembert.multibody.kernels.states import MotionState
 
 MOST_ITERATIONS = 25
 _ROUNDING = 2e-16  # of the largest entry, below which an error is left
 LOOSE = 1e-9  # the same where corrections stop to shrink
+_NOTHING = 1e-13  # of velocities or coordinates: corrections below it are rounding
 _ROUGH = 1e-5  # the same of a correction, after which the error is smaller by the contraction
 
 
@@ -35,7 +38,7 @@ def weigh(model, n, matrices, x, w, work, f, at):
 
 @inner
 def weigh_along(model, n, x, w, work, buffers, f):
-    """The same in complex numbers: what inertia and constraint forces change in the residual of the system at rest."""
+    """The same along directions: what inertia and constraint forces change in the residual of the system at rest."""
     # M w + J^T m from the residual of the system at rest with the accelerations w and multipliers m, less that without
     # both.
     still, at = buffers[0], buffers[1]
@@ -48,6 +51,31 @@ def weigh_along(model, n, x, w, work, buffers, f):
     residual(model, n, at, still, still, work, 1.0, buffers[2])
     for i in range(n):
         f[i] -= buffers[2, i]
+
+
+@inner
+def weigh_slopes(perturbed, n, matrices, x, w, dw, size, work, numbers, slopes):
+    """Fill ``slopes`` (N + 1,) with those of M w + J^T m and of the constraints, along directions, for w = (w, m).
+
+    ``x`` (N + 1,) are coordinates of the model along directions, ``dw`` the slopes of w, ``numbers`` (5, N + 1)
+    workspace, and ``size`` that of the velocities or coordinates that w corrects.
+    """
+    # Joints alone give J^T m and the constraints, the kept masses M dw.
+    f, at = numbers[0], numbers[1]
+    for i in range(len(f)):
+        f[i] = 0.0
+        at[i] = x[i] if i < n else joined(w[i], dw[i])
+    constraint_forces(perturbed, at, at, at, work, f)
+    for i in range(len(f)):
+        slopes[i] = slope_of(f[i])
+    add_inertia(matrices, dw, slopes)
+    # Slopes of the masses matter where w is no rounding, as where velocities leave the constraints in a step.
+    if largest(w, 0, n) > _NOTHING * size:
+        for i in range(len(f)):
+            at[i] = w[i] if i < n else 0.0
+        weigh_along(perturbed, n, x, at, work, numbers[2:], f)
+        for i in range(n):
+            slopes[i] += slope_of(f[i])
 
 
 @inner
@@ -171,40 +199,49 @@ def accelerate_roughly(problem, matrices, model, state, work, scratch):
             break
 
 
-@kernel
-def settle_along(
-    problem: IntegrationProblem, matrices: Matrices, perturbed: Address, state: MotionState, dstate: MotionState,
-    moved: Reals2,
-    work: Address, complex_state: Complexes2, first: int,
-) -> None:  # fmt: skip
-    """Derivative of a settled state along a direction, from that of the state before; signals in ``work``.
+@inner
+def settle_along(problem, matrices, perturbed, state, dstate, moved, work, first, numbers, slopes):
+    """Derivatives of a settled state along directions, from those of the state before; signals in ``work``.
 
-    ``moved`` (6, N + 1) are the moves as `settle` left them, and workspace; so is ``complex_state`` (10, N + 1).
+    ``moved`` are the moves as `settle` left them; ``numbers`` (8, N + 1) and ``slopes`` (4, N + 1) are workspace.
     """
     n, last = problem.n, len(state.x) - 1
-    dmoved, answer, imaginary = moved[2:4], moved[4], moved[5]
-    shift, f, rate, second = complex_state[3], complex_state[4], complex_state[5], complex_state[6]
+    dmoved, answer, change = slopes, slopes[2], slopes[3]
+    f, rate, second = numbers[3], numbers[4], numbers[5]
     for i in range(last + 1):
         dmoved[0, i] = dmoved[1, i] = 0.0
     for level in range(first if last > n else ACCELERATION, 3):
-        before = 0.0
+        before, size = 0.0, largest(state.x if level == POSITION else state.v, 0, n)
         for iteration in range(MOST_ITERATIONS):
-            perturb(n, state, dstate, complex_state)
+            perturb(n, state, dstate, numbers)
             if level < 2:
-                for i in range(last + 1):
-                    shift[i] = complex(moved[level, i], STEP * dmoved[level, i])
-                weigh_along(perturbed, n, complex_state[0], shift, work, complex_state[7:], f)
+                weigh_slopes(
+                    perturbed, n, matrices, numbers[0], moved[level], dmoved[level], size, work, numbers[3:], change
+                )
             else:
-                residual(perturbed, n, complex_state[0], complex_state[1], complex_state[2], work, 1.0, f)
+                residual(perturbed, n, numbers[0], numbers[1], numbers[2], work, 1.0, f)
+                for i in range(n):
+                    change[i] = slope_of(f[i])
             if level > 0:
-                constraint_rates(perturbed, n, complex_state[0], complex_state[1], complex_state[2], work, rate, second)
+                constraint_rates(perturbed, n, numbers[0], numbers[1], numbers[2], work, rate, second)
                 for i in range(n, last):
-                    f[i] = rate[i] if level == 1 else second[i]
-            for i in range(last + 1):
-                imaginary[i] = f[i].imag / STEP
-            solve(matrices.pattern.layout, matrices.rigid, imaginary, answer)
+                    change[i] = slope_of(rate[i]) if level == 1 else slope_of(second[i])
+            solve_slopes(matrices.pattern.layout, matrices.rigid, change, answer)
             move(n, level, answer, dstate, dmoved)
-            norm, size = _sizes(n, level, answer, dstate, dmoved)
-            if finished(iteration, norm, before, size) or not norm < 1e100:
+            norm = _share(n, level, answer, dstate, dmoved)
+            if finished(iteration, norm, before, 1.0) or not norm < 1e100:
                 break
             before = norm
+
+
+@inner
+def _share(n, level, answer, dstate, dmoved):
+    """Largest correction of slopes as a part of the largest entry that it corrects, or of its move."""
+    values = dstate.x if level == POSITION else (dstate.v if level == VELOCITY else dstate.a)
+    # In lanes each direction has its own size; the largest share decides for all.
+    norm, size = 0.0 * values[n], 0.0 * values[n] + 1e-300
+    for i in range(n):
+        norm, size = maximum(norm, size_of(answer[i])), maximum(size, size_of(values[i]))
+        if level < ACCELERATION:
+            size = maximum(size, size_of(dmoved[level, i]))
+    return worst(norm / size)

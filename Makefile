@@ -82,11 +82,11 @@ wording: .venv/test.stamp
 	$(BIN)/pytest -n 0 --inline-snapshot=create,fix $(TESTS)
 
 verify: .venv/verify.stamp checked
-	$(BIN)/pytest -n auto --dist loadfile -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE) --check
 
 validation: .venv/verify.stamp kernels
-	$(BIN)/pytest -n auto --dist loadfile $(RECORDING) -m "$(ALL)" --evidence=$(EVIDENCE)
+	$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder $(RECORDING) -m "$(ALL)" --evidence=$(EVIDENCE)
 	$(BIN)/python docs/validation.py $(EVIDENCE)
 
 docs: .venv/docs.stamp

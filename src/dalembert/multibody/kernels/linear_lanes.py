@@ -1,18 +1,11 @@
-"""Solutions of one factorised system for eight right-hand sides at once, side by side as lanes."""
+"""Solutions of one factorised system for slopes: one right-hand side, or eight at once, side by side as lanes."""
 
 from numba.extending import overload
 
-from dalembert.kernels.kernel import inlined, inner, kernel
-from dalembert.kernels.lanes import LANES, add_column, lane_vector, lanes
+from dalembert.kernels.kernel import inlined, inner
+from dalembert.kernels.lanes import LANES, add_column, lanes
 from dalembert.kernels.views import address_of
-from dalembert.kernels.words import Reals2
-from dalembert.multibody.kernels.linear import DENSE, Factors, Layout, solve
-
-
-@kernel
-def solve_lanes(layout: Layout, factors: Factors, given: Reals2, answer: Reals2) -> None:
-    """Solve for the first N rows of ``given`` (N + 1, 8) into those of ``answer``."""
-    _solve(layout, factors, lane_vector(given), lane_vector(answer))
+from dalembert.multibody.kernels.linear import DENSE, solve
 
 
 @inner

@@ -8,7 +8,6 @@ from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
 from dalembert.kernels.kernel import Compiled
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
-from dalembert.multibody.kernels.linear_lanes import solve_lanes
 from dalembert.multibody.kernels.nodes import RESTORE
 from dalembert.multibody.model.lowered import Lowered
 
@@ -26,7 +25,7 @@ def are_many(sample: Lowered, directions: int) -> bool:
 def dual_kernels(sample: Lowered) -> list[Compiled]:
     """Return the kernels of components for derivatives in dual numbers, and what differentiates steps by them."""
     nodes = [kind.kernel("restore", Dual) for kind in sample.structure.reduction.nodes]
-    return [*sample.kernels(Dual), *nodes, *[RESTORE[Dual]] * bool(nodes), solve_lanes]
+    return [*sample.kernels(Dual), *nodes, *[RESTORE[Dual]] * bool(nodes)]
 
 
 def is_dual(models: Sequence[BlockModel]) -> bool:

@@ -21,6 +21,9 @@ Number = complex
 """A complex or a dual number; for its type alone."""
 
 
+_REST = 1e-90  # size of slopes below which a direction is at rest
+
+
 class SlopeWork(NamedTuple):
     """Vectors of slopes (-, N + 1, lanes) and of numbers along directions (-, N + 1, doubles), as workspace.
 
@@ -115,7 +118,7 @@ def _slope_of(number):
 
 
 def maximum(x, y):
-    """Return y where it is larger than x or no number, else x. What is no number stays."""
+    """Return the larger number; NaN if one of both is NaN."""
     return y if x == x and not y <= x else x
 
 
@@ -144,6 +147,14 @@ def _worst(x):
         return largest
 
     return of_lanes
+
+
+@inner
+def share_of(norm, size):
+    """Return the largest norm of slopes as a part of the size of the same direction."""
+    # A direction at rest has nothing but rounding, and size zero: its share is large, but does not count as divergence,
+    # which would end the iteration of all directions of its group.
+    return worst(norm / (size + _REST))
 
 
 @inner

@@ -129,7 +129,10 @@ def energy_kernels(lowered: Lowered, derivatives: bool) -> list[Compiled]:
 
 
 def energies(model: BlockModel, x: np.ndarray, v: np.ndarray, times: np.ndarray, within: np.ndarray) -> np.ndarray:
-    """Kinetic energy, potential energy, power of what is not conservative, (samples, 3)."""
+    """Kinetic energy, potential energy, power of what is not conservative, (samples, 3).
+
+    Dual numbers have one more axis in ``x``, ``v`` (samples, N + 1, 9) and in the result.
+    """
     totals, call = np.zeros((len(times), 3, *x.shape[2:]), dtype=x.dtype), model.need("energy").call()
     x, v = np.ascontiguousarray(x), np.ascontiguousarray(v)
     energy_history(

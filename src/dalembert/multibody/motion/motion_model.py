@@ -208,8 +208,8 @@ class BuiltModel(MotionModel):
         solver = self.solver.suiting(self.shared, float(self.times[-1]))
         together = solver.takes_duals and are_many(self.shared, len(self.parameters))
         kernels = dual_kernels(self.shared) if together else self.shared.kernels(complex)
-        own = solver.kernels(self.shared.structure, Dual if together else complex)
-        prepare([*own, *kernels, *self.observer.kernels(self.shared, True)])
+        method = solver.kernels(self.shared.structure, Dual if together else complex)
+        prepare([*method, *kernels, *self.observer.kernels(self.shared, True)])
         return self.solver
 
     def lanes_of(self, samples: int) -> int:

@@ -11,10 +11,12 @@ import dalembert.multibody as mb
 import planar_scenes
 import spatial_scenes
 from dalembert.kernels.duals import DIRECTIONS, Dual, as_duals
+from dalembert.multibody.integrators.shared.convergence import has_settled
 from dalembert.multibody.integrators.shared.integrator import Integrator
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP
 from dalembert.multibody.kernels.kind import Kind
+from dalembert.multibody.kernels.slopes import share_of
 from dalembert.multibody.model import directions
 from dalembert.multibody.model.directions import dual_models
 from dalembert.multibody.model.lowered import Lowered
@@ -145,3 +147,7 @@ def test_sensitivities_are_those_of_complex_steps_one_by_one(
     plain, one_by_one = own.linearise(start)
     np.testing.assert_array_equal(values, plain)
     np.testing.assert_allclose(together, one_by_one, rtol=0, atol=1e-10 * np.abs(one_by_one).max())
+
+
+def test_a_direction_at_rest_does_not_end_the_iteration_of_the_others() -> None:
+    assert not has_settled(share_of(1e-20, 0.0), 0.0, 1e-15)

@@ -22,7 +22,7 @@ from dalembert.multibody.kernels.assembly import energies
 from dalembert.multibody.kernels.block_table import BlockModel
 from dalembert.multibody.kernels.elementary import STEP, reciprocal, size_of, where
 from dalembert.multibody.kernels.records import model_at
-from dalembert.multibody.kernels.slopes import SlopeWork, arrays_of, joined, slope_of, slope_work, worst
+from dalembert.multibody.kernels.slopes import SlopeWork, arrays_of, joined, share_of, slope_of, slope_work
 from dalembert.multibody.kernels.states import MotionState
 from dalembert.multibody.model import evaluate
 from dalembert.multibody.model.lowered import Lowered
@@ -261,8 +261,8 @@ def converge_along_with_energy(problem, matrices, perturbed, strength, h, dgoal,
         energy, gain = energy_of_step(perturbed, h, at, middle, end, totals)
         dgain = slope_of(gain)
         excess = slope_of(energy) - (dgoal + dgain)
-        size = size_of(slope_of(totals[0])) + size_of(slope_of(totals[1])) + size_of(dgoal) + 1e-300
-        left = worst(size_of(excess) / size)
+        size = size_of(slope_of(totals[0])) + size_of(slope_of(totals[1])) + size_of(dgoal)
+        left = share_of(size_of(excess), size)
         if strength == 0.0 or left <= 1e-14 or (attempt > 3 and left > 0.5 * before):
             break
         before = left

@@ -36,7 +36,7 @@ from dalembert.multibody.kernels.assembly import constraint_forces, constraint_r
 from dalembert.multibody.kernels.elementary import size_of
 from dalembert.multibody.kernels.linear_lanes import solve_slopes
 from dalembert.multibody.kernels.records import call_at, model_at
-from dalembert.multibody.kernels.slopes import joined, maximum, slope_of, worst
+from dalembert.multibody.kernels.slopes import joined, maximum, share_of, slope_of
 from dalembert.multibody.kernels.states import clear
 
 MOST_ITERATIONS = 20
@@ -339,8 +339,8 @@ def converge_along(problem, matrices, perturbed, h, s, along):
 @inner
 def _share(n, h, scale, f, gap, ds):
     """Largest correction of a coordinate's slope, as a part of the slopes at the end, which may grow with the steps."""
-    norm, length = 0.0 * ds.x1[n], 0.0 * ds.x1[n] + 1e-300
+    norm, length = 0.0 * ds.x1[n], 0.0 * ds.x1[n]
     for k in range(n):
         norm = maximum(norm, 0.25 * h * h * (size_of(f[k]) + size_of(gap[k])) / scale[k])
         length = maximum(length, (size_of(ds.x1[k]) + h * size_of(ds.v1[k])) / scale[k])
-    return worst(norm / length)
+    return share_of(norm, length)

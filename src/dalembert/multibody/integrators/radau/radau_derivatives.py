@@ -38,10 +38,10 @@ from dalembert.multibody.kernels.slopes import (
     joined,
     maximum,
     read_states,
+    share_of,
     slope_of,
     slope_work,
     state_of,
-    worst,
     write_states,
 )
 from dalembert.multibody.kernels.states import MotionStates, copy, row
@@ -70,8 +70,8 @@ def along_workspace(count: int, width: int, works: np.ndarray, directions: int, 
 def kernels(derivatives: type | None) -> list[Compiled]:
     """Return what differentiates steps and their ends, in an arithmetic."""
     together = differentiate_together, settle_end_together
-    own = together if derivatives is Dual else (differentiate, settle_end_along)
-    return [*own] if derivatives else []
+    pair = together if derivatives is Dual else (differentiate, settle_end_along)
+    return [*pair] if derivatives else []
 
 
 def _differentiate(
@@ -169,10 +169,9 @@ def _converge_along(problem, method, matrices, perturbed, h, s, dstart, along, d
 @inner
 def _share(n, scale, moved, ahead):
     """Largest correction of a coordinate's slope, as a part of the largest way of one in the step."""
-    # Numbers of the kind of slopes; without a way, nothing but zero corrections are small.
-    norm, length = 0.0 * moved[0, 0], 0.0 * moved[0, 0] + 1e-300
+    norm, length = 0.0 * moved[0, 0], 0.0 * moved[0, 0]  # of the type of slopes
     for i in range(len(moved)):
         for k in range(n):
             norm = maximum(norm, size_of(moved[i, k]) / scale[k])
             length = maximum(length, size_of(ahead[i, k]) / scale[k])
-    return worst(norm / length)
+    return share_of(norm, length)

@@ -129,5 +129,5 @@ _record_along_at = record_along.at
 
 def settling_kernels(derivatives: type | None) -> list[Compiled]:
     """Return what differentiates states that are settled at starts and outputs, in an arithmetic."""
-    own = (accelerate_together, record_together) if derivatives is Dual else (accelerate_along, record_along)
-    return [*own] if derivatives else []
+    pair = (accelerate_together, record_together) if derivatives is Dual else (accelerate_along, record_along)
+    return [*pair] if derivatives else []

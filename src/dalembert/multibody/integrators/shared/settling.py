@@ -13,7 +13,7 @@ from dalembert.multibody.kernels.assembly import constraint_forces, constraint_r
 from dalembert.multibody.kernels.elementary import size_of
 from dalembert.multibody.kernels.linear import solve
 from dalembert.multibody.kernels.linear_lanes import solve_slopes
-from dalembert.multibody.kernels.slopes import joined, maximum, perturb, slope_of, worst
+from dalembert.multibody.kernels.slopes import joined, maximum, perturb, share_of, slope_of
 from dalembert.multibody.kernels.states import MotionState
 
 MOST_ITERATIONS = 25
@@ -69,7 +69,7 @@ def weigh_slopes(perturbed, n, matrices, x, w, dw, size, work, numbers, slopes):
     for i in range(len(f)):
         slopes[i] = slope_of(f[i])
     add_inertia(matrices, dw, slopes)
-    # Slopes of the masses matter where w is no rounding, as where velocities leave the constraints in a step.
+    # Slopes of the masses count where w is larger than rounding, as where a step leaves the constraints.
     if largest(w, 0, n) > _NOTHING * size:
         for i in range(len(f)):
             at[i] = w[i] if i < n else 0.0
@@ -239,9 +239,9 @@ def _share(n, level, answer, dstate, dmoved):
     """Largest correction of slopes as a part of the largest entry that it corrects, or of its move."""
     values = dstate.x if level == POSITION else (dstate.v if level == VELOCITY else dstate.a)
     # In lanes each direction has its own size; the largest share decides for all.
-    norm, size = 0.0 * values[n], 0.0 * values[n] + 1e-300
+    norm, size = 0.0 * values[n], 0.0 * values[n]
     for i in range(n):
         norm, size = maximum(norm, size_of(answer[i])), maximum(size, size_of(values[i]))
         if level < ACCELERATION:
             size = maximum(size, size_of(dmoved[level, i]))
-    return worst(norm / size)
+    return share_of(norm, size)

@@ -244,13 +244,20 @@ def studio(
 
 
 @app.command("compile")
-def compile_() -> None:
-    """Compile all kernels now on all cores, for example for an image or the shared disk of a cluster."""
+def compile_(
+    vectors: Annotated[
+        bool, typer.Option("--all", help="Also compile what computes eight samples or derivatives side by side.")
+    ] = False,
+) -> None:
+    """Compile the usual kernels now on all cores, for example for an image or the shared disk of a cluster.
+
+    Batches, fits of three and more parameters, and rare components compile the others when they first need them.
+    """
     from dalembert.kernels.everything import package_kernels
     from dalembert.kernels.objects import cache_folder
     from dalembert.kernels.preparation import prepare
 
-    kernels = package_kernels()
+    kernels = package_kernels(vectors)
     prepare(kernels)
     typer.echo(f"{len(kernels)} kernels are ready in {cache_folder()}")
 

@@ -17,7 +17,7 @@ _HOMES = ("dalembert.multibody", "dalembert.vibration", "dalembert.surrogate")
 def package_kernels(vectors: bool = False) -> list[Compiled]:
     """Every kernel of the package by its symbol, those of each kind of component in all roles.
 
-    ``vectors``: also those of kinds in dual numbers and in lanes, and of kinds that are not usual.
+    ``vectors``: also those in dual numbers and in lanes, and those of kinds that are not usual.
     """
     found: dict[str, Compiled] = {}
     for home in _HOMES:
@@ -31,7 +31,8 @@ def package_kernels(vectors: bool = False) -> list[Compiled]:
 def _kernels_of(module: object, vectors: bool) -> Iterator[Compiled]:
     for value in vars(module).values():
         if isinstance(value, Compiled):
-            yield value
+            if vectors or not value.is_vector:
+                yield value
         elif hasattr(value, "all_kernels") and not isinstance(value, type):  # a kind of component
             if vectors or getattr(value, "is_usual", True):
                 yield from value.all_kernels()

@@ -64,6 +64,7 @@ class Compiled:
     symbol: str
     function: Callable
     in_python = False  #: whether it is called back as a Python function, and never compiled
+    is_vector = False  #: whether it computes in lanes or dual numbers alone
 
     @cached_property
     def origin(self) -> Origin | None:
@@ -114,8 +115,11 @@ class Compiled:
 class BlockKernel(Compiled):
     """A C function of two addresses: those of a call and of a block, or of what else its function takes."""
 
-    def __init__(self, function: Callable[[Any, Any], None], symbol: str, owner: Owner | None = None) -> None:
+    def __init__(
+        self, function: Callable[[Any, Any], None], symbol: str, owner: Owner | None = None, dtype: type = float
+    ) -> None:
         self.function, self.symbol, self._owner = function, symbol, owner
+        self.is_vector = (dtype if owner is None else owner[2]) in (Dual, Lanes)
 
     @cached_property
     def origin(self) -> Origin | None:
@@ -161,7 +165,8 @@ class Kernel(Compiled):
     The first argument of the Python function may be the value of another one, ``first``, that is compiled into it.
     """
 
-    def __init__(self, function: Callable, first: Any = None) -> None:
+    def __init__(self, function: Callable, first: Any = None, is_vector: bool = False) -> None:
+        self.is_vector = is_vector
         hints = get_type_hints(function, include_extras=True)
         self.function, self._first = function, () if first is None else (first,)
         self.__name__, self.__doc__ = function.__name__, function.__doc__
@@ -239,6 +244,11 @@ class Kernel(Compiled):
 def kernel(function: Callable) -> Any:
     """Compile a function alone when it is first needed; its annotations are its arguments' types."""
     return Kernel(function)
+
+
+def vector_kernel(function: Callable) -> Any:
+    """Compile a function in lanes, as `kernel` does; `dalembert compile` leaves it out unless asked for all."""
+    return Kernel(function, is_vector=True)
 
 
 def origin_of(module: str | None, owner: Any, *role: str) -> Origin | None:

@@ -11,7 +11,7 @@ from dalembert.kernels import packaged
 from dalembert.kernels.everything import package_kernels
 from dalembert.kernels.kernel import find
 from dalembert.multibody.components.planar.cable_element import CABLE
-from dalembert.multibody.integrators.generalized_alpha import generalized_alpha
+from dalembert.multibody.integrators.generalized_alpha import generalized_alpha, lanes_run
 from dalembert.multibody.integrators.radau import radau_loop
 from installed_wheel import install_wheel
 
@@ -72,3 +72,10 @@ def test_a_wheel_computes_the_same_bits_without_compiling(tmp_path: Path) -> Non
     site = install_wheel(tmp_path)
     assert moved(tmp_path / "empty", str(site)) == moved(tmp_path / "cache")
     assert not (tmp_path / "empty").exists()
+
+
+def test_kernels_in_lanes_and_duals_are_compiled_when_needed_unless_all_are_asked_for() -> None:
+    usual, every = ({kernel.symbol for kernel in package_kernels(vectors)} for vectors in (False, True))
+    assert usual < every
+    assert lanes_run.integrate_lanes.symbol in every - usual
+    assert {kernel.symbol for kernel in CABLE.vector_kernels()} < every - usual

@@ -92,7 +92,7 @@ def _balance(kind: Declaration, dtype: type) -> BlockKernel:
 MAKERS = {role: partial(_kernel, role) for role in ("spread", "change", "restore")} | {"balance": _balance}
 
 
-def _of_all(role: Callable[..., int], begin: Callable[..., None], symbol: str) -> BlockKernel:
+def _of_all(role: Callable[..., int], begin: Callable[..., None], symbol: str, dtype: type) -> BlockKernel:
     """The kernel that begins with the changes of what belongs to no node, and calls the nodes' kernels of a role."""
     address, first = role, begin
 
@@ -103,7 +103,7 @@ def _of_all(role: Callable[..., int], begin: Callable[..., None], symbol: str) -
             node = table.nodes + k * BLOCK_SIZE
             call(address(block_at(node)), work, node)
 
-    return BlockKernel(nodes, symbol)
+    return BlockKernel(nodes, symbol, dtype=dtype)
 
 
 def _deal(role: Callable[..., int], dtype: type, symbol: str) -> BlockKernel:
@@ -118,7 +118,7 @@ def _deal(role: Callable[..., int], dtype: type, symbol: str) -> BlockKernel:
             # Coordinates of nodes are filled by the kernels of their kinds after this.
             change[i] = delta[rows[i]]
 
-    return _of_all(role, deal, symbol)
+    return _of_all(role, deal, symbol, dtype)
 
 
 def _restore(dtype: type) -> BlockKernel:
@@ -130,7 +130,7 @@ def _restore(dtype: type) -> BlockKernel:
         for i in range(len(change)):
             change[i] = 0.0
 
-    return _of_all(inlined(lambda node: node.restore), clear, f"dal_nodes_restore_{dtype.__name__.lower()}")
+    return _of_all(inlined(lambda node: node.restore), clear, f"dal_nodes_restore_{dtype.__name__.lower()}", dtype)
 
 
 _change = inlined(lambda node: node.change)

@@ -1,12 +1,12 @@
 """Solutions with the factorised matrices of eight samples side by side, each with the bits that it has alone."""
 
-from dalembert.kernels.kernel import inlined, kernel
+from dalembert.kernels.kernel import inlined, vector_kernel
 from dalembert.kernels.lanes import add_column, add_columns, lane_vector, sum_products
 from dalembert.kernels.words import Integers, Reals2
 from dalembert.multibody.kernels.linear import DENSE, Layout
 
 
-@kernel
+@vector_kernel
 def solve_samples(
     layout: Layout, matrix: Reals2, pivots: Integers, tops: Integers, given: Reals2, buffer: Reals2, answer: Reals2
 ) -> None:

@@ -128,7 +128,7 @@ def _kernel(dtype: type) -> BlockKernel:
         for n in range(table.signal_count):
             evaluate_one(index[n, 0], index[n, 1], index[n, 2], index[n, 3], data, knots, callbacks, t, within, out[n])
 
-    return BlockKernel(evaluate, f"dal_signals_{dtype.__name__.lower()}")
+    return BlockKernel(evaluate, f"dal_signals_{dtype.__name__.lower()}", dtype=dtype)
 
 
 def _time_kernel(dtype: type) -> BlockKernel:
@@ -140,7 +140,7 @@ def _time_kernel(dtype: type) -> BlockKernel:
         out, data = view2(own.signals, 1, 3), view(table.signal_data, 1)
         out[0, 0], out[0, 1], out[0, 2] = own.t + data[0].real, 1.0, 0.0
 
-    return BlockKernel(evaluate, f"dal_time_{dtype.__name__.lower()}")
+    return BlockKernel(evaluate, f"dal_time_{dtype.__name__.lower()}", dtype=dtype)
 
 
 EVALUATE_REAL, EVALUATE_COMPLEX, EVALUATE_DUAL = map(_kernel, (float, complex, Dual))

@@ -84,7 +84,7 @@ def along_kernels(function: Callable) -> tuple[Kernel, Kernel]:
 
     Its first argument is a complex or a dual number, whose type decides on `arrays_of` a `SlopeWork`.
     """
-    return Kernel(function, _complex_zero), Kernel(function, _dual_zero)
+    return Kernel(function, _complex_zero), Kernel(function, _dual_zero, is_vector=True)
 
 
 @inlined

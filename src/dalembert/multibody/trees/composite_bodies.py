@@ -3,7 +3,7 @@
 Walker and Orin (1982); Featherstone, Rigid Body Dynamics Algorithms (2008), section 6.2.
 """
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inlined, inner, kernel, vector_kernel
 from dalembert.kernels.lanes import WIDTH as LANES
 from dalembert.kernels.lanes import lane_vector
 from dalembert.kernels.words import Complexes, Complexes2, Reals, Reals2
@@ -92,7 +92,7 @@ def fill_complex_masses(frames: ComplexFrames, q: Complexes2, scratch: Complexes
     _fill(frames, q, scratch, masses)
 
 
-@kernel
+@vector_kernel
 def fill_masses_in_lanes(frames: Frames, q: Reals2, rows: Reals2, masses: Reals2) -> None:
     """The same for eight samples at once; the workspace has rows of eight numbers, zero before."""
     count, work = len(frames.parents), lane_vector(rows)

@@ -3,7 +3,7 @@
 Luh, Walker and Paul (1980); Featherstone, Rigid Body Dynamics Algorithms (2008), section 5.3.
 """
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inlined, inner, kernel, vector_kernel
 from dalembert.kernels.lanes import WIDTH as LANES
 from dalembert.kernels.lanes import lane_vector
 from dalembert.kernels.words import Complexes, Complexes2, Reals, Reals2
@@ -86,7 +86,7 @@ def fill_complex_torques(
     _fill(frames, gravity, q, v, a, scratch, torques)
 
 
-@kernel
+@vector_kernel
 def fill_torques_in_lanes(
     frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, rows: Reals2, torques: Reals2
 ) -> None:

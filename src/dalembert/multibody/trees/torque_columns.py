@@ -5,7 +5,7 @@ the acceleration of its origin less gravity. A unit motion of a joint above turn
 d. The torque of that joint is m d.a + h.(d x b + (d x w) x w + a x t) + t.J b + (t x w).J w.
 """
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inlined, inner, kernel, vector_kernel
 from dalembert.kernels.lanes import WIDTH as LANES
 from dalembert.kernels.lanes import lane_vector
 from dalembert.kernels.words import Complexes, Complexes2, Complexes3, Reals, Reals2, Reals3
@@ -118,7 +118,7 @@ def fill_complex_columns(
     _fill(frames, gravity, q, v, a, scratch, columns)
 
 
-@kernel
+@vector_kernel
 def fill_columns_in_lanes(
     frames: Frames, gravity: Reals, q: Reals2, v: Reals2, a: Reals2, rows: Reals2, columns: Reals3
 ) -> None:

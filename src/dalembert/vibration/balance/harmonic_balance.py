@@ -6,8 +6,7 @@ from dalembert.arguments import Checked, limited
 from dalembert.errors import InputError, counted
 
 AUTO = "auto"
-AUTO = "auto"
-"""Harmonics that are chosen by the truncation error."""
+"""Harmonics that are chosen by the truncation error, samples by the balance of forces."""
 MOST_HARMONICS = 1000
 """Far more than a friction contact needs; their tangents would fill the memory of any machine."""
 MOST_GIVEN = 1_000_000
@@ -104,7 +103,7 @@ class HarmonicBalance(Checked):
         needed = 2 * most + 1
         if isinstance(self.samples, str):
             if self.samples != AUTO:
-                raise InputError(f"HarmonicBalance: samples is {self.samples!r}; expected a number or 'automatic'")
+                raise InputError(f"HarmonicBalance: samples is {self.samples!r}; expected a number or 'auto'")
         elif self.samples < needed:
             raise InputError(
                 f"HarmonicBalance: samples is {self.samples}, too few for {most} harmonics. Use at least {needed}"

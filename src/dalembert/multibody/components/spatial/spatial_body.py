@@ -86,6 +86,10 @@ class Body(BaseBody):
         return self.marker(point).numbers
 
 
+#: Derivative of a vector by rotations about the axes: e_j x u = sum_k u_k TURNS[k, :, j].
+TURNS = np.cross(np.eye(3)[None, :, :], np.eye(3)[:, None, :]).transpose(0, 2, 1)
+
+
 def pose_modes(coordinates: np.ndarray, frame: np.ndarray, vectors: int = 4) -> np.ndarray:
     """Derivatives of nodes by displacements and rotations about the placed point, (size, 6).
 
@@ -95,6 +99,5 @@ def pose_modes(coordinates: np.ndarray, frame: np.ndarray, vectors: int = 4) -> 
     modes = np.zeros((*nodes.shape, 6), np.result_type(coordinates, frame))
     modes[:, 0, :, :3] = np.eye(3)
     nodes[:, 0] -= frame[:3]
-    for axis in range(3):
-        modes[..., 3 + axis] = np.cross(np.eye(3)[axis], nodes)
+    modes[..., 3:] = np.tensordot(nodes, TURNS, 1)
     return modes.reshape(-1, 6)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dalembert.kernels.kernel import inner, kernel
+from dalembert.kernels.kernel import inner, vector_kernel
 from dalembert.kernels.lanes import WIDTH, lane_vector, lane_zeros
 from dalembert.kernels.words import Integers, Reals, Reals4
 from dalembert.multibody.integrators.generalized_alpha.lanes_newton import (
@@ -70,7 +70,7 @@ def run_in_lanes(
     return out, newton.alone[: len(samples)] == 1
 
 
-@kernel
+@vector_kernel
 def integrate_lanes(
     problem: IntegrationProblem, edges: Reals, opens: Integers, step: float, radius: float, consistent: bool,
     tolerance: float, ends: Reals4, out: Histories, start: Consistency, scratch: LanesNewton,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import kernel
+from dalembert.kernels.kernel import vector_kernel
 from dalembert.kernels.lanes import WIDTH, entry, lane_vector, lane_zeros, lanes2
 from dalembert.kernels.views import address_of
 from dalembert.kernels.words import Address, Integers, Reals, Reals2, Reals3
@@ -81,7 +81,7 @@ def lanes_balance(width: int, motions: Sequence[FreeRigidMotions], energies: Seq
     return LanesBalance(direction, lane_zeros(3), numbers, balance_lanes.address)
 
 
-@kernel
+@vector_kernel
 def balance_lanes(
     problem: IntegrationProblem, h: float, tolerance: float, least: Reals, step: LanesStep, balance: LanesBalance
 ) -> None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dalembert.kernels.kernel import inlined, inner, kernel
+from dalembert.kernels.kernel import inlined, inner, vector_kernel
 from dalembert.kernels.lanes import WIDTH, lane_vector, lane_zeros, lanes2, larger, sizes
 from dalembert.kernels.views import address_of
 from dalembert.kernels.words import Integers, Integers2, Reals, Reals2, Reals3, Reals4
@@ -344,7 +344,7 @@ def _advance(problem, pattern, t, target, last, within, tolerance, balance, work
             break
 
 
-@kernel
+@vector_kernel
 def integrate_lanes(
     problem: IntegrationProblem, edges: Reals, step: float, tolerance: float, out: Histories, consistent: Consistency,
     none: MotionStates, balance: LanesBalance, work: LanesRun,

@@ -11,6 +11,8 @@ from scipy.sparse.linalg import splu
 
 from dalembert.errors import SolveError
 
+BLOCK = 32
+"""Columns that are solved for together."""
 SINGULAR = 1e-13
 """Ratio of the smallest to the largest pivot below which a matrix counts as singular."""
 
@@ -34,8 +36,12 @@ def factorise(matrix: Any, what: str, advice: str = "; clamp it") -> Callable[[n
     _refuse_singular(lu.U.diagonal(), singular)
 
     def solve(b: np.ndarray) -> np.ndarray:
-        # One column at a time: SuperLU was measured to take four times as long for 192 of them at once.
-        return lu.solve(b) if b.ndim == 1 else np.array([lu.solve(np.ascontiguousarray(column)) for column in b.T]).T
+        if b.ndim == 1 or not b.shape[1]:
+            return lu.solve(b)
+        # Blocks of columns whose entries lie side by side: 17,277 degrees of freedom took 15 ms a column alone, 5.6 in
+        # blocks. Rows side by side took longer than columns alone.
+        parts = [lu.solve(np.asfortranarray(b[:, first : first + BLOCK])) for first in range(0, b.shape[1], BLOCK)]
+        return np.concatenate(parts, axis=1)
 
     return solve
 

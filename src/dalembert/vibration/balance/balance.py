@@ -18,11 +18,11 @@ from functools import cached_property
 
 import numpy as np
 
-from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, Tangent
+from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, StiffnessTangent
 from dalembert.vibration.fourier import Fourier, real_blocks
-from dalembert.vibration.interface.condensation import CondensedStructure
+from dalembert.vibration.interface.condensation import CondensedStructure, norm
 from dalembert.vibration.interface.free_motions import HeldByElements
-from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered
+from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered, law_numbers, penalties
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums
 from dalembert.vibration.laws.friction_law import GAP, NORMAL, STUCK, TANGENTIAL
 from dalembert.vibration.laws.law_block import LawSums
@@ -35,12 +35,19 @@ case for it: a point of 480 unknowns took 28 ms densely and 31 by the structure,
 @dataclass(frozen=True)
 class Evaluation:
     """Residual, forces and states of contacts at a point. ``residual`` (q, coefficients); ``forces``
-    (rows, coefficients): of all elements, by the rows that they see; ``states`` (cells, samples): by friction block.
+    (rows, coefficients): of all elements, by the rows that they see; ``states`` (cells, samples): by friction block;
+    ``size``: norm of the terms that are in balance, of which residuals are parts.
     """
 
     residual: np.ndarray
     forces: np.ndarray
     states: tuple[np.ndarray, ...]
+    size: float
+
+    @property
+    def scale(self) -> float:
+        """What residuals are parts of: 1 where nothing acts."""
+        return self.size or 1.0
 
 
 @dataclass(frozen=True)
@@ -86,17 +93,19 @@ class Balance:
         phasors = self.series.phasors(unknowns)
         return self.series.coefficients((stiffness @ phasors[:, :, None])[:, :, 0] - force)
 
-    def linearised(self, point: CondensedStructure, unknowns: np.ndarray) -> tuple[Evaluation, Tangent]:
+    def linearised(self, point: CondensedStructure, unknowns: np.ndarray) -> tuple[Evaluation, StiffnessTangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
         tangent = self.tangent(point, unknowns)
         return self.at(point, unknowns, tangent), tangent
 
-    def at(self, point: CondensedStructure, unknowns: np.ndarray, tangent: Tangent | None = None) -> Evaluation:
+    def at(
+        self, point: CondensedStructure, unknowns: np.ndarray, tangent: StiffnessTangent | None = None
+    ) -> Evaluation:
         """Residual at a point; see :meth:`residual`."""
         linear = self.linear(point.stiffness, point.force, unknowns)
-        return self.residual(linear, unknowns, point.omega, tangent, point.rate)
+        return self.residual(linear, unknowns, point.omega, tangent, point.rate, point.load)
 
-    def tangent(self, point: CondensedStructure, unknowns: np.ndarray) -> Tangent:
+    def tangent(self, point: CondensedStructure, unknowns: np.ndarray) -> StiffnessTangent:
         """The tangent of the structure alone, to which :meth:`residual` adds the elements."""
         # ∂R/∂ω of the structure at fixed U; laws that see velocities add their part in `_add_laws`.
         slope = self.linear(point.slope, point.force_slope, unknowns)
@@ -113,10 +122,10 @@ class Balance:
         for block in self.lowered.blocks:
             if block.kind != ELASTIC:
                 continue
-            for rows, penalties, numbers in zip(block.rows, _penalties(block), block.numbers, strict=True):
+            for rows, stuck, numbers in zip(block.rows, penalties(block), block.numbers, strict=True):
                 shapes = self._combination[rows]
                 # Z_q + L^T k L: all sliders stick, as under a friction limit without bound.
-                stiffness += shapes.T @ (penalties[:, None] * shapes)
+                stiffness += shapes.T @ (stuck[:, None] * shapes)
                 if block.normal and self.series.mean:
                     # k_n (u_N - g): the gap of a closed contact is a force on the mean.
                     force[0] += numbers[NORMAL] * numbers[GAP] * shapes[-1]
@@ -137,11 +146,12 @@ class Balance:
         return result
 
     def residual(
-        self, linear: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None = None, rate: float = 1.0
-    ) -> Evaluation:
+        self, linear: np.ndarray, unknowns: np.ndarray, omega: float, tangent: StiffnessTangent | None = None,
+        rate: float = 1.0, load: float = 0.0,
+    ) -> Evaluation:  # fmt: skip
         """Return the residual from its linear part; the elements' part of the tangent is added to ``tangent``. Without
         a tangent, in complex numbers where the linear part or the elements' numbers are complex. ``rate``: derivative
-        of ω by the parameter of the tangent's slope.
+        of ω by the parameter of the tangent's slope; ``load``: norm of the loads.
         """
         kind = np.result_type(linear, unknowns, self._kind)
         acting = np.zeros((len(self.lowered.row_names), self.series.count), dtype=kind)
@@ -156,9 +166,11 @@ class Balance:
             before = tangent.copy() if isinstance(tangent, DenseTangent) and blocks and rigid else None
             for number in blocks:
                 states[number] = self._add_friction(number, acting, unknowns, total, tangent, before)
-        return Evaluation(linear + self._combination.T @ acting, acting, tuple(states))
+        # Of load and element forces, since a free or self-excited motion has no load.
+        size = load + norm(acting)
+        return Evaluation(linear + self._combination.T @ acting, acting, tuple(states), size)
 
-    def _add_functions(self, acting: np.ndarray, unknowns: np.ndarray, tangent: Tangent | None) -> None:
+    def _add_functions(self, acting: np.ndarray, unknowns: np.ndarray, tangent: StiffnessTangent | None) -> None:
         series = self.series
         for rows, element in self.lowered.functions:
             force, slopes = element.law((self._combination[rows] @ unknowns) @ series.synthesis.T)
@@ -171,7 +183,7 @@ class Balance:
                 self._spread(rows[None], local, tangent)
 
     def _add_laws(
-        self, acting: np.ndarray, unknowns: np.ndarray, omega: float, tangent: Tangent | None, rate: float
+        self, acting: np.ndarray, unknowns: np.ndarray, omega: float, tangent: StiffnessTangent | None, rate: float
     ) -> None:
         for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
             displacements = (self._combination @ unknowns)[block.rows]
@@ -186,15 +198,15 @@ class Balance:
             np.add.at(acting, block.rows, force)
 
     def _spread(
-        self, rows: np.ndarray, local: np.ndarray, tangent: Tangent, penalties: np.ndarray | None = None
+        self, rows: np.ndarray, local: np.ndarray, tangent: StiffnessTangent, stuck: np.ndarray | None = None
     ) -> None:
         """J += L^T G L, with local Jacobians G (cells, columns · coefficients, columns · coefficients).
 
-        ``penalties`` (cells, columns): stiffnesses of each cell if it sticks, where several cells share a row.
+        ``stuck`` (cells, columns): stiffnesses of each cell if it sticks, where several cells share a row.
         """
         if isinstance(tangent, BlockTangent):
             places = self._retained[rows]
-            tangent.add(places, local, tangent.reference[places] if penalties is None else penalties)
+            tangent.add(places, local, tangent.reference[places] if stuck is None else stuck)
             return
         cells, columns = rows.shape
         split = local.reshape(cells, columns, self.series.count, columns, self.series.count)
@@ -215,7 +227,7 @@ class Balance:
         acting: np.ndarray,
         unknowns: np.ndarray,
         total: np.ndarray,
-        tangent: Tangent | None,
+        tangent: StiffnessTangent | None,
         before: DenseTangent | None,
     ) -> np.ndarray:
         """Forces of a block's cells, and its part of the tangent; the states (cells, samples)."""
@@ -228,7 +240,7 @@ class Balance:
             if isinstance(tangent, DenseTangent) and before is not None:
                 self._spread_rigid(block, local, tangent, before)
             else:
-                self._spread(block.rows, local, tangent, _penalties(block))
+                self._spread(block.rows, local, tangent, penalties(block))
         for cell in self._undetermined(block, states):
             places = self._retained[block.rows[cell, : block.tangents]]
             # A stuck contact that sees velocities: ε U_0 in place of its mean force holds the mean at zero.
@@ -246,7 +258,7 @@ class Balance:
             return (self._combination @ unknowns)[block.rows]
         places = self._retained[block.rows]
         # D = U - R_0/ε; velocities along tangents: p = ε ∂U/∂τ - R_0.
-        moved = unknowns[places] - total[places] / _penalties(block)[:, :, None]
+        moved = unknowns[places] - total[places] / penalties(block)[:, :, None]
         if block.memory:
             return moved
         tangents = places[:, : block.tangents]
@@ -257,7 +269,9 @@ class Balance:
     @cached_property
     def _sums(self) -> list[ContactSums]:
         return [
-            contact_sums(_given(block), Shape(block.tangents, block.normal, block.memory), self.series, self.events)
+            contact_sums(
+                law_numbers(block), Shape(block.tangents, block.normal, block.memory), self.series, self.events
+            )
             for block in self.lowered.blocks
         ]
 
@@ -277,7 +291,7 @@ class Balance:
         """J += G ∂D/∂U with ∂D/∂U = 1 - J_0/ε, or ε ∂/∂τ - J_0 for trial forces; the same for ω."""
         count, columns = self.series.count, block.rows.shape[1]
         prediction = np.tile(np.eye(count), (columns, 1, 1))
-        weights = 1 / _penalties(block)
+        weights = 1 / penalties(block)
         if not block.memory:
             weights[:, : block.tangents] = 1.0
         for places, weight, numbers, gradient in zip(
@@ -303,7 +317,7 @@ class Balance:
         """Stiffness of the contact of each row if it is closed and sticks, (rows,); 0 where there is no contact."""
         stiffness = np.zeros(len(self.lowered.row_names))
         for block in self.lowered.blocks:
-            np.add.at(stiffness, block.rows, _penalties(block))
+            np.add.at(stiffness, block.rows, penalties(block))
         return stiffness
 
     @cached_property
@@ -351,18 +365,3 @@ class Balance:
     def _kind(self) -> np.dtype:
         blocks = (*self.lowered.blocks, *self.lowered.laws)
         return np.result_type(float, *(block.numbers for block in blocks))
-
-
-def _penalties(block: FrictionBlock) -> np.ndarray:
-    """Penalty of each row of a block, (cells, columns)."""
-    columns = [block.numbers[:, TANGENTIAL]] * block.tangents + [block.numbers[:, NORMAL]] * block.normal
-    return np.stack(columns, axis=1)
-
-
-def _given(block: FrictionBlock) -> np.ndarray:
-    """Numbers of a block's law; one that is given forces for displacements has a unit stiffness."""
-    numbers = np.ascontiguousarray(block.numbers, dtype=np.result_type(float, block.numbers))
-    if not block.memory:
-        numbers = numbers.copy()
-        numbers[:, TANGENTIAL] = 1.0
-    return numbers

@@ -53,6 +53,10 @@ class BlockTangent:
     held: HeldByElements | None = None
     active: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
 
+    #: Residual of the linear system of a step, as part of its right-hand side. The step still gains up to six digits,
+    #: and the next iteration corrects the rest (Dembo, Eisenstat and Steihaug, SIAM J. Numerical Analysis 19, 1982).
+    forcing = 1e-6
+
     def add(self, places: np.ndarray, gradients: np.ndarray, stuck: np.ndarray) -> None:
         """Local Jacobians (cells, columns * coefficients, ...) of cells at coordinates (cells, columns).
 

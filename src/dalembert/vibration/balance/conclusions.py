@@ -9,8 +9,8 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import VERIFIED, Solution
-from dalembert.vibration.interface.condensation import NEARLY, norm
-from dalembert.vibration.interface.free_motions import FLOATING, MOVING, NAMED
+from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.free_motions import MOVING, NAMED
 
 LEFT = 0.1
 """Part of the residual, along a motion that no stiffness holds, from which this motion is the cause."""
@@ -56,7 +56,7 @@ def _cause(problem: Equations, solution: Solution) -> Finding | None:
         message = f"the function of {element!r} returns forces that are not finite."
         advice = "Let it return finite forces at all displacements."
         return Finding("force-not-finite", "error", {"element": element}, message, advice)
-    if _resonates(solution):
+    if solution.point.resonates:
         message = "the structure resonates without damping, and no element limits its motion."
         return Finding("undamped-resonance", "error", {}, message, "Give it damping, or choose another frequency.")
     return None
@@ -75,18 +75,6 @@ def _not_finite(problem: Equations, solution: Solution) -> str:
             if not np.all(np.isfinite(element.law(motion[rows])[0])):
                 return element.name
     return ""
-
-
-def _resonates(solution: Solution) -> bool:
-    """Whether the structure has no dynamic stiffness in some motion at a harmonic that forces act in."""
-    point = solution.point
-    forced = np.abs(point.force).max(axis=1, initial=0.0) > FLOATING * point.load
-    stiffness = point.stiffness[forced & (point.frequencies > 0)]
-    if not stiffness.size:
-        return False
-    # The smallest singular value is the dynamic stiffness against the least resisted motion at this harmonic.
-    smallest = np.linalg.svd(stiffness, compute_uv=False)[:, -1]
-    return bool(np.any(smallest <= NEARLY * point.stiffest))
 
 
 def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Finding, ...]:
@@ -108,7 +96,8 @@ def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Find
 
 def free_findings(problem: Equations) -> tuple[Finding, ...]:
     """Return the finding on motions of the structure that nothing holds."""
-    names = problem.condensation.free_names
+    # By receptances, the reference holds all motions.
+    names = "" if problem.by_receptances else problem.condensation.free_names
     if not names:
         return ()
     message = f"No spring and no contact holds the mean position along {names}; the smallest one was chosen."

@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 
@@ -11,12 +12,15 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.first_guesses import first_guesses
-from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, HarmonicBalance
-from dalembert.vibration.balance.newton import CrossingPlane, Solution, correct, scale_of
+from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, RECEPTANCE, STIFFNESS, HarmonicBalance
+from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct
 from dalembert.vibration.balance.preparation import prepare_balance
+from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import Condensation, CondensedStructure, norm
-from dalembert.vibration.interface.lowering import Lowered, lower
+from dalembert.vibration.interface.condensation import Condensation, norm
+from dalembert.vibration.interface.contacts_stuck import ContactsStuck
+from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
+from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
@@ -35,32 +39,80 @@ class Equations:
     lowered: Lowered
     method: HarmonicBalance
     checkpoint: Checkpoint | None = None
-    _balances: dict[int, Balance] = field(default_factory=dict, repr=False, compare=False)
+    _balances: dict[int, AnyBalance] = field(default_factory=dict, repr=False, compare=False)
+    _stuck: ContactsStuck | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def by_receptances(self) -> bool:
+        """Whether the structure is written by receptances."""
+        return self.method.solver == RECEPTANCE
 
     @cached_property
     def condensation(self) -> Condensation:
-        """The structure at any frequency."""
-        series = Fourier(self.method.orders, self.method.first_samples)
-        loads = series.phasors(np.real(self.lowered.loads(series)))
-        return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, loads)
+        """The structure at any frequency, by dynamic stiffnesses."""
+        return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, self._loads)
+
+    @cached_property
+    def contacts_stuck(self) -> ContactsStuck:
+        """The structure whose contacts stick."""
+        return self._stuck or ContactsStuck(self.lowered)
+
+    @cached_property
+    def _series(self) -> Fourier:
+        return Fourier(self.method.orders, self.method.first_samples)
+
+    @cached_property
+    def _loads(self) -> np.ndarray:
+        """Phasors of the forces, (orders, n)."""
+        return self._series.phasors(np.real(self.lowered.loads(self._series)))
+
+    def at(self, omega: float) -> Point:
+        """The structure at ω, rad/s."""
+        if self.by_receptances:
+            return self.contacts_stuck.receptances(self._series, self._loads, omega).at(omega)
+        return self.condensation.at(omega)
+
+    def with_method(self, method: HarmonicBalance) -> "Equations":
+        """The equations with another method."""
+        return replace(self, method=method, _balances={}, _stuck=self.contacts_stuck if self.by_receptances else None)
 
     @cached_property
     def with_even(self) -> "Equations":
         """The equations with even harmonics too; they themselves if these are kept."""
-        return (
-            replace(self, method=replace(self.method, odd_only=False), _balances={}) if self.method.odd_only else self
-        )
+        return self.with_method(replace(self.method, odd_only=False)) if self.method.odd_only else self
 
     @property
     def nonlinear(self) -> bool:
         """Whether there are contacts or springs."""
         return bool(self.lowered.blocks or self.lowered.laws or self.lowered.functions)
 
-    def balance(self, samples: int) -> Balance:
+    def balance(self, samples: int) -> AnyBalance:
         """The elements with this many samples of a period."""
         if samples not in self._balances:
-            self._balances[samples] = Balance(self.lowered, Fourier(self.method.orders, samples), self.method.events)
+            series, events = Fourier(self.method.orders, samples), self.method.events
+            self._balances[samples] = (
+                ReceptanceBalance(self.lowered, series, self.contacts_stuck.reference, events)
+                if self.by_receptances
+                else Balance(self.lowered, series, events)
+            )
         return self._balances[samples]
+
+    def stiffness_balance(self, samples: int) -> Balance:
+        """The same where the structure is written by dynamic stiffnesses."""
+        balance = self.balance(samples)
+        if isinstance(balance, Balance):
+            return balance
+        raise TypeError("the equations are by receptances, without dynamic stiffnesses")
+
+    def motion(self, point: Point, unknowns: np.ndarray, samples: int, dofs: np.ndarray | None = None) -> np.ndarray:
+        """Coefficients of all degrees of freedom, or of some, (dofs, coefficients)."""
+        balance = self.balance(samples)
+        if isinstance(point, ReceptancePoint) and isinstance(balance, ReceptanceBalance):
+            return point.motion(balance.deviation(point.omega, unknowns), dofs)
+        assert not isinstance(point, ReceptancePoint)
+        retained = balance.series.phasors(unknowns)
+        whole = balance.series.coefficients(self.condensation.full(retained, point.interior(retained)))
+        return whole if dofs is None else whole[dofs]
 
     def solve(
         self,
@@ -68,7 +120,7 @@ class Equations:
         omega: float,
         samples: int,
         plane: CrossingPlane | None = None,
-        point: CondensedStructure | None = None,
+        point: Point | None = None,
     ) -> Solution:
         """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice. If nothing holds
         the structure along a motion, too few samples may leave a mean force along it, which no mean position balances.
@@ -100,21 +152,21 @@ class Equations:
         omega: float,
         samples: int,
         plane: CrossingPlane | None,
-        point: CondensedStructure | None,
+        point: Point | None,
     ) -> Solution:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
 
         def finer(candidate: Solution) -> Solution:
             balance, near = self.balance(2 * candidate.samples), (candidate.unknowns, candidate.omega)
-            return correct(balance, self.condensation.at, self.method, *near, plane, candidate.point)
+            return correct(balance, self.at, self.method, *near, plane, candidate.point)
 
         def solved(number: int) -> Solution:
-            return correct(self.balance(number), self.condensation.at, self.method, unknowns, omega, plane, point)
+            return correct(self.balance(number), self.at, self.method, unknowns, omega, plane, point)
 
         def back(candidate: Solution) -> Solution:
             """The solution with the first number of samples, by which a curve stays smooth; None if there is none."""
             near = candidate.unknowns, candidate.omega
-            first = correct(self.balance(samples), self.condensation.at, self.method, *near, plane, candidate.point)
+            first = correct(self.balance(samples), self.at, self.method, *near, plane, candidate.point)
             return first if first.converged else candidate
 
         # Samples first, motion later: a residual below `sampling` that Newton's method cannot reduce is one of kinks,
@@ -144,7 +196,7 @@ class Equations:
 
         With little varying force contacts stick, so that this is the way of a friction limit from infinity to its own.
         """
-        point, best = self.condensation.at(omega), None
+        point, best = self.at(omega), None
         for guess in first_guesses(self.balance(self.method.first_samples), self.method, point):
             solution = self.solve(guess, omega, self.method.first_samples, point=point)
             if solution.converged:
@@ -164,10 +216,11 @@ class Equations:
         self, unknowns: np.ndarray, omega: float, iterations: float, error: float, converged: float, samples: float,
         sampling_error: float,
     ) -> Solution:  # fmt: skip
-        point = self.condensation.at(omega)
-        evaluation, tangent = self.balance(int(samples)).linearised(point, unknowns)
+        balance: Any = self.balance(int(samples))
+        point = self.at(omega)
+        evaluation, tangent = balance.linearised(point, unknowns)
         return Solution(
-            omega, unknowns, point, evaluation, tangent, scale_of(point, evaluation), int(iterations), error,
+            omega, unknowns, point, evaluation, tangent, evaluation.scale, int(iterations), error,
             bool(converged), int(samples), sampling_error,
         )  # fmt: skip
 
@@ -187,8 +240,9 @@ class Equations:
 
     def _sampling_error(self, solution: Solution) -> float:
         """Residual with twice the samples, as part of the forces."""
-        evaluation = self.balance(2 * solution.samples).at(solution.point, solution.unknowns)
-        return norm(evaluation.residual) / scale_of(solution.point, evaluation)
+        balance: Any = self.balance(2 * solution.samples)
+        evaluation = balance.at(solution.point, solution.unknowns)
+        return norm(evaluation.residual) / evaluation.scale
 
 
 def equations(
@@ -211,6 +265,29 @@ def equations(
         _require_symmetry(lowered)
     prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
     return Equations(lowered, method, checkpoint)
+
+
+LARGE = 500
+"""Unknowns above which a system of elastic contacts is solved by receptances."""
+
+
+def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) -> str:
+    """Return the way in which the structure is written for a curve.
+
+    InputError where receptances are asked for and rigid contacts or ``stability`` need dynamic stiffnesses.
+    """
+    rigid = [lowered.contacts[block.contacts[0]] for block in lowered.blocks if block.kind != ELASTIC]
+    if method.solver == RECEPTANCE and (rigid or stability):
+        cause = f"the contact {rigid[0]!r} is rigid" if rigid else "the stability of points was asked for"
+        raise InputError(
+            f"HarmonicBalance: solver is 'receptance', but {cause}, which needs dynamic stiffnesses. "
+            "Use solver='stiffness'"
+        )
+    if method.solver != AUTO:
+        return method.solver
+    least = method.first()
+    unknowns = len(lowered.row_names) * (2 * len(least.orders) - (least.orders[0] == 0))
+    return RECEPTANCE if lowered.blocks and not (rigid or stability) and unknowns > LARGE else STIFFNESS
 
 
 RESAMPLED = (1.25, 2.0, 1.5, 4.0)

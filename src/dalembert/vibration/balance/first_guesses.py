@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import islice
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -10,10 +11,11 @@ from scipy.optimize import brentq
 from dalembert.vibration.balance.arc_length import along
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import CrossingPlane, Solution, correct
+from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import CondensedStructure, norm
 from dalembert.vibration.interface.lowering import ELASTIC
+from dalembert.vibration.interface.receptances import ReceptancePoint
 
 STEPS = 50
 """Newton steps, at most."""
@@ -29,8 +31,15 @@ MOST_STEPS = 120
 """Points after which continuation stops."""
 
 
-def first_guesses(balance: Balance, method: HarmonicBalance, point: CondensedStructure) -> Iterator[np.ndarray]:
+def first_guesses(balance: AnyBalance, method: HarmonicBalance, point: Point) -> Iterator[np.ndarray]:
     """Yield guesses of a first point; the later ones are made if those before lead to no solution."""
+    if isinstance(point, ReceptancePoint):
+        # The motion while all contacts stick, then a path over the varying forces.
+        yield point.linear
+        if method.halvings:
+            yield Loading(balance, replace(method, resolution=RESOLUTION), point).last()
+        return
+    assert isinstance(balance, Balance)  # that of the point
     lowered = balance.lowered
     pressed = any(block.normal and block.kind == ELASTIC for block in lowered.blocks)
     if not point.held and (lowered.laws or lowered.functions):
@@ -108,19 +117,13 @@ class Loading:
     Static forces act from the beginning: they may press the contacts. ``point``: there, with the whole force.
     """
 
-    balance: Balance
+    balance: AnyBalance
     method: HarmonicBalance
-    point: CondensedStructure
+    point: Point
 
-    def at(self, load: float) -> CondensedStructure:
+    def at(self, load: float) -> Point:
         """The structure with a part of the varying forces, and its derivatives by that."""
-        # f(p) = f_0 + p f_varying at one frequency: ∂R/∂p = -f_varying, and no matrix depends on p. Static forces stay,
-        # as they may be what presses the contacts.
-        varying = np.where(self.point.frequencies[:, None] > 0, self.point.force, 0.0)
-        return replace(
-            self.point, slope=np.zeros_like(self.point.slope),
-            force=self.point.force + (load - 1.0) * varying, force_slope=varying, rate=0.0,
-        )  # fmt: skip
+        return self.point.loaded(load)
 
     def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: CrossingPlane | None = None) -> Solution:
         """Newton's method from a guess."""
@@ -128,7 +131,8 @@ class Loading:
 
     def first(self, load: float) -> Solution:
         """Return the solution from closed contacts that stick."""
-        return self.solve(self.balance.stuck(self.at(load)), load, self.balance.series.samples)
+        balance: Any = self.balance
+        return self.solve(balance.stuck(self.at(load)), load, balance.series.samples)
 
     def last(self) -> np.ndarray:
         """Return the unknowns at the end of the path over the force: at full force if the path reaches it."""

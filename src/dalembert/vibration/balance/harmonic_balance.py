@@ -3,10 +3,13 @@
 from dataclasses import dataclass, replace
 
 from dalembert.arguments import Checked, limited
-from dalembert.errors import InputError, counted
+from dalembert.errors import InputError, counted, require_known
 
 AUTO = "auto"
 """Harmonics that are chosen by the truncation error, samples by the balance of forces."""
+STIFFNESS, RECEPTANCE = "stiffness", "receptance"
+SOLVERS = (AUTO, STIFFNESS, RECEPTANCE)
+"""Ways to write the structure in the balance."""
 MOST_HARMONICS = 1000
 """Far more than a friction contact needs; their tangents would fill the memory of any machine."""
 MOST_GIVEN = 1_000_000
@@ -53,6 +56,11 @@ class HarmonicBalance(Checked):
         First number that ``harmonics="auto"`` tries. A force or an amplitude of a higher harmonic raises it.
     most_harmonics : int
         Largest number that ``harmonics="auto"`` tries.
+    solver : {"auto", "stiffness", "receptance"}
+        How the structure is written at the coordinates of contacts and springs. ``"stiffness"``: a dynamic stiffness,
+        for each frequency. ``"receptance"``: the compliance and the modes of the structure whose contacts stick,
+        computed once: for interfaces of many elastic contacts, without stability. ``"auto"``: receptances where
+        :func:`frequency_response` has more than 500 unknowns.
 
     Raises
     ------
@@ -90,8 +98,10 @@ class HarmonicBalance(Checked):
     truncation: float = limited(5e-3, above=0, below=1)
     least_harmonics: int = limited(3, least=1, most=MOST_HARMONICS)
     most_harmonics: int = limited(127, least=1, most=MOST_HARMONICS)
+    solver: str = AUTO
 
     def __post_init__(self) -> None:
+        require_known("solver", self.solver, SOLVERS, "HarmonicBalance")
         if isinstance(self.harmonics, str) and self.harmonics != AUTO:
             raise InputError(f"HarmonicBalance: harmonics is {self.harmonics!r}; expected a whole number or 'auto'")
         if self.most_harmonics < self.least_harmonics:

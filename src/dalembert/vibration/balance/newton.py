@@ -14,16 +14,18 @@ import numpy as np
 
 from dalembert.vibration.balance.balance import Balance, Evaluation
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.balance.tangents import Tangent, bordered
 from dalembert.vibration.interface.condensation import CondensedStructure, norm
+from dalembert.vibration.interface.receptances import ReceptancePoint
 
+Point = CondensedStructure | ReceptancePoint
+AnyBalance = Balance | ReceptanceBalance
 DAMPINGS = (1.0, 0.5, 0.25, 0.125, 0.03125)
 """Parts of a Newton step of the line search, until the residual falls."""
 PATIENCE, PROGRESS = 10, 0.7
 """Newton's method stops if this many iterations do not reduce the least residual to this part."""
 Trial = TypeVar("Trial")
-COARSE = 1e-6
-"""Residual of the linear system of a step, as part of its right-hand side, where that is iterated."""
 ROUNDING = 100 * np.finfo(float).eps
 VERIFIED = 1e-8
 """Residual, as part of the forces, above which no rounding is an excuse: nothing is balanced there."""
@@ -57,7 +59,7 @@ class Solution:
 
     omega: float
     unknowns: np.ndarray
-    point: CondensedStructure
+    point: Point
     evaluation: Evaluation
     tangent: Tangent
     scale: float
@@ -68,15 +70,16 @@ class Solution:
     sampling_error: float = np.nan
     distance: float = 0.0
 
+    @property
+    def condensed(self) -> CondensedStructure:
+        """The condensed structure of a solution by dynamic stiffnesses."""
+        if isinstance(self.point, CondensedStructure):
+            return self.point
+        raise TypeError("the solution is one by receptances, without a condensed structure")
+
     def rate(self) -> np.ndarray:
         """dU/dω along the path, (q, coefficients)."""
-        return -self.tangent.solve(self.tangent.slope[:, :, None], COARSE)[:, :, 0]
-
-
-def scale_of(point: CondensedStructure, evaluation: Evaluation) -> float:
-    """Return the size of the forces that are in balance, of which residuals are parts."""
-    # Of load and element forces, since a free or self-excited motion has no load; 1 N where there is no force at all.
-    return point.load + norm(evaluation.forces) or 1.0
+        return -self.tangent.solve(self.tangent.slope[:, :, None], self.tangent.forcing)[:, :, 0]
 
 
 def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
@@ -100,24 +103,24 @@ def line_search(trial: Callable[[float], Trial], error: float) -> Trial | None:
 
 @np.errstate(over="ignore", invalid="ignore")  # a trial may lie beyond what a law is for: the search returns
 def correct(
-    balance: Balance,
-    structure: Callable[[float], CondensedStructure],
+    balance: AnyBalance,
+    structure: Callable[[float], Point],
     method: HarmonicBalance,
     unknowns: np.ndarray,
     omega: float,
     plane: CrossingPlane | None = None,
-    point: CondensedStructure | None = None,
+    point: Point | None = None,
 ) -> Solution:
     """Solve by Newton's method from a guess, at ω or on a plane. ``structure`` returns the condensed structure at a
     value of ω, or of another parameter of the path; ``point`` is that at ω if it is known.
     """
 
-    def place(unknowns: np.ndarray, omega: float, point: CondensedStructure | None, step: bool = True) -> Solution:
+    def place(unknowns: np.ndarray, omega: float, point: Any, step: bool = True) -> Solution:
         point = structure(omega) if point is None else point
-        linearised: Any = balance.linearised(point, unknowns) if step else (balance.at(point, unknowns), None)
+        linearised: Any = of.linearised(point, unknowns) if step else (of.at(point, unknowns), None)
         evaluation, tangent = linearised
         distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        scale = scale_of(point, evaluation)
+        scale = evaluation.scale
         # On a plane two equations hold, R = 0 and distance = 0, both without dimension: one error for both.
         error = math.hypot(norm(evaluation.residual) / scale, distance)
         # Terms as large as Z U cancel in R, so that a residual of some 100 eps of them is rounding. `VERIFIED` limits
@@ -134,6 +137,7 @@ def correct(
         known = at.point if plane is None else None
         return place(at.unknowns + part * step[0], at.omega + part * step[1], known, step=part == 1.0)
 
+    of: Any = balance  # its points are those that `structure` returns
     errors: list[float] = []
     at = place(unknowns, omega, point)
     errors.append(at.error)
@@ -163,13 +167,11 @@ def _step(at: Solution, plane: CrossingPlane | None) -> tuple[np.ndarray, float]
     """Newton's step of U and ω; None where the matrix is singular."""
     residual = at.evaluation.residual
     try:
-        # The linear system is solved to 1e-6 only where GMRES solves it: the step still gains up to six digits, and the
-        # next iteration corrects the rest (Dembo, Eisenstat and Steihaug, SIAM Journal on Numerical Analysis 19, 1982).
         if plane is not None:
             scales = plane.size, plane.width, at.scale
             top = -residual / at.scale
-            change, turned = bordered(at.tangent, plane.direction, scales, top, -at.distance, COARSE)
+            change, turned = bordered(at.tangent, plane.direction, scales, top, -at.distance, at.tangent.forcing)
             return change * plane.size, turned * plane.width
-        return -at.tangent.solve(residual[:, :, None], COARSE)[:, :, 0], 0.0
+        return -at.tangent.solve(residual[:, :, None], at.tangent.forcing)[:, :, 0], 0.0
     except np.linalg.LinAlgError:
         return None

@@ -27,10 +27,10 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
 
     ``solution``: converged; ``perturbed``: the system along each parameter, moved by a complex step.
     """
-    series, condensation, point = problem.balance(solution.samples).series, problem.condensation, solution.point
+    series, condensation, point = problem.balance(solution.samples).series, problem.condensation, solution.condensed
     retained = series.phasors(solution.unknowns)
     motion = condensation.full(retained, point.interior(retained))
-    linear = problem.balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
+    linear = problem.stiffness_balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
     inner_pushes, residuals = [], []
     for system in perturbed:
         # f' - Z' x of all degrees of freedom: what the parameter changes where the motion is held.

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dalembert.vibration.balance.block_tangent import EXACT, BlockTangent
+from dalembert.vibration.balance.receptance_tangent import ReceptanceTangent
 from dalembert.vibration.interface.free_motions import HeldByElements
 
 
@@ -17,6 +18,9 @@ class DenseTangent:
     jacobian: np.ndarray
     slope: np.ndarray
     held: HeldByElements | None = None
+
+    #: Residual of a linear system: rounding.
+    forcing = EXACT
 
     def copy(self) -> "DenseTangent":
         """Return a copy of the arrays."""
@@ -60,7 +64,8 @@ class DenseTangent:
         return np.linalg.solve(self.supported, right.reshape(self.slope.size, right.shape[2])).reshape(right.shape)
 
 
-Tangent = DenseTangent | BlockTangent
+StiffnessTangent = DenseTangent | BlockTangent
+Tangent = StiffnessTangent | ReceptanceTangent
 
 
 def bordered(

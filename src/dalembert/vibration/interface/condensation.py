@@ -11,7 +11,7 @@ small structure is written in its modes with q held, so that :math:`Z_{ll}` is d
 factorised.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -83,6 +83,27 @@ class CondensedStructure:
     def held(self) -> bool:
         """Whether the stiffness alone holds the mean position."""
         return not self.free_motions.size
+
+    @property
+    def resonates(self) -> bool:
+        """Whether there is no dynamic stiffness in some motion at a harmonic that forces act in."""
+        forced = np.abs(self.force).max(axis=1, initial=0.0) > FLOATING * self.load
+        stiffness = self.stiffness[forced & (self.frequencies > 0)]
+        if not stiffness.size:
+            return False
+        # The smallest singular value is the dynamic stiffness against the least resisted motion at this harmonic.
+        smallest = np.linalg.svd(stiffness, compute_uv=False)[:, -1]
+        return bool(np.any(smallest <= NEARLY * self.stiffest))
+
+    def loaded(self, part: float) -> "CondensedStructure":
+        """The same with a part of the varying forces, and derivatives by that part."""
+        # f(p) = f_0 + p f_varying at one frequency: ∂R/∂p = -f_varying, and no matrix depends on p. Static forces stay,
+        # as they may be what presses the contacts.
+        varying = np.where(self.frequencies[:, None] > 0, self.force, 0.0)
+        return replace(
+            self, slope=np.zeros_like(self.slope), force=self.force + (part - 1.0) * varying, force_slope=varying,
+            rate=0.0,
+        )  # fmt: skip
 
     def interior(self, retained: np.ndarray) -> np.ndarray:
         """Interior coordinates (orders, l) where the retained ones are (orders, q)."""

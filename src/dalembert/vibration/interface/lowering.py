@@ -14,7 +14,7 @@ from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.coordinates import Coordinates, coordinates
 from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Rigid
 from dalembert.vibration.laws.element import LawElement
-from dalembert.vibration.laws.friction_law import sliding
+from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL, sliding
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.laws.user_law import UserLaw
@@ -46,6 +46,21 @@ class FrictionBlock:
     def ruled(self) -> LawBlock:
         """Elastic contacts as elements that follow a general law."""
         return LawBlock(UserLaw("slider", "", function=sliding, internal=self.tangents), (), self.rows, self.numbers)
+
+
+def penalties(block: FrictionBlock) -> np.ndarray:
+    """Penalty of each row of a block, (cells, columns)."""
+    columns = [block.numbers[:, TANGENTIAL]] * block.tangents + [block.numbers[:, NORMAL]] * block.normal
+    return np.stack(columns, axis=1)
+
+
+def law_numbers(block: FrictionBlock) -> np.ndarray:
+    """Numbers of a block's law; one that is given forces for displacements has a unit stiffness."""
+    numbers = np.ascontiguousarray(block.numbers, dtype=np.result_type(float, block.numbers))
+    if not block.memory:
+        numbers = numbers.copy()
+        numbers[:, TANGENTIAL] = 1.0
+    return numbers
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ import numpy as np
 
 from dalembert.errors import InputError
 from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.harmonic_balance import RECEPTANCE
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.fourier import in_orders
-from dalembert.vibration.interface.condensation import CondensedStructure
 from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.paths.curve import FrequencyCurve
 
@@ -23,6 +23,7 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
             f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
         )
     unknowns, samples, orders = curve.unknowns[point], int(curve.samples[point]), problem.method.orders
+    unknowns = _in_unknowns_of(problem, curve, unknowns)
     if set(curve.orders) < set(orders):
         unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
     if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):
@@ -32,6 +33,17 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
             "start from a curve of the same system"
         )
     return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
+
+
+def _in_unknowns_of(problem: Equations, curve: FrequencyCurve, unknowns: np.ndarray) -> np.ndarray:
+    """Return the unknowns (q, coefficients) of a point of a curve as those of equations with another solver."""
+    coordinates, rows = problem.lowered.coordinates, len(problem.lowered.row_names)
+    by_receptances = curve.provenance["method"].get("solver") == RECEPTANCE
+    if by_receptances and not problem.by_receptances and len(unknowns) == rows:
+        return unknowns[coordinates.rows]
+    if problem.by_receptances and not by_receptances and len(unknowns) == len(coordinates.rows):
+        return coordinates.combination @ unknowns
+    return unknowns
 
 
 def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
@@ -45,13 +57,6 @@ def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
     return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
 
 
-def response_of(problem: Equations, solution: Solution) -> np.ndarray:
-    """Return the coefficients of all degrees of freedom at a solution, (n, coefficients)."""
-    return whole_motion(problem, solution.point, solution.unknowns, solution.samples)
-
-
-def whole_motion(problem: Equations, point: CondensedStructure, unknowns: np.ndarray, samples: int) -> np.ndarray:
-    """Return the coefficients of all degrees of freedom from those of the retained coordinates, (n, coefficients)."""
-    series = problem.balance(samples).series
-    retained = series.phasors(unknowns)
-    return series.coefficients(problem.condensation.full(retained, point.interior(retained)))
+def response_of(problem: Equations, solution: Solution, dofs: np.ndarray | None = None) -> np.ndarray:
+    """Return the coefficients of all degrees of freedom at a solution, or of some, (dofs, coefficients)."""
+    return problem.motion(solution.point, solution.unknowns, solution.samples, dofs)

@@ -17,7 +17,6 @@ from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.laws.contacts import FrictionContact
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.curve_points import whole_motion
 from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -159,5 +158,4 @@ def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.
             f"deformation: the curve has unknowns of shape {unknowns.shape} and {len(curve.contacts)} contacts; the "
             f"system has {balance.shape} and {len(problem.lowered.contacts)}; give the system of the curve"
         )
-    condensed = problem.condensation.at(2 * np.pi * float(curve.frequencies[point]))
-    return whole_motion(problem, condensed, unknowns, int(curve.samples[point]))
+    return problem.motion(problem.at(2 * np.pi * float(curve.frequencies[point])), unknowns, int(curve.samples[point]))

@@ -18,7 +18,7 @@ from dalembert.vibration.balance.conclusions import (
     unconverged,
     unconverged_findings,
 )
-from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.equations import Equations, chosen_solver, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.truncation import (
@@ -29,6 +29,7 @@ from dalembert.vibration.balance.truncation import (
     hardest,
     truncation_findings,
 )
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import observed, response_of, restarted
@@ -159,7 +160,7 @@ def frequency_response(
         require_viscous(system.structure, "stability and Floquet multipliers")
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if is_path else "given"}
     posed = _PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point)
-    method = method or HarmonicBalance()
+    method = posed.solved(method or HarmonicBalance())
     if method.automatic:
         return _refine(posed, method)
     return _conclude(posed, _follow(posed, posed.equations(method), start, stability, check))
@@ -178,6 +179,10 @@ class _PosedCurve:
     stability: bool
     checkpoint: Checkpoint | None
     on_point: OnPoint | None
+
+    def solved(self, method: HarmonicBalance) -> HarmonicBalance:
+        """Return the method with a way to write the structure."""
+        return replace(method, solver=chosen_solver(lower(self.system), method, self.stability))
 
     def equations(self, method: HarmonicBalance) -> Equations:
         """The equations of the system with the harmonics of a method."""
@@ -296,7 +301,7 @@ def _record(problem: Equations, point: PathPoint, rows: np.ndarray) -> dict[str,
     instants = np.arange(PHASES) * solution.samples // PHASES
     for block, block_states in zip(lowered.blocks, solution.evaluation.states, strict=True):
         np.maximum.at(states, block.contacts, block_states[:, instants])
-    response, forces = response_of(problem, solution)[rows], solution.evaluation.forces
+    response, forces = response_of(problem, solution, rows), solution.evaluation.forces
     displacements = problem.balance(solution.samples).displacements(solution.unknowns)
     if not solution.converged:
         response, displacements, forces = (np.full_like(array, np.nan) for array in (response, displacements, forces))

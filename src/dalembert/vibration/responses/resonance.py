@@ -318,7 +318,7 @@ class _Climber:
     def _rise(self, problem: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
         """Derivative of the logarithm of the amplitude along the path."""
         # ∇a · (dU, dω)/a with dx_l = -Z_ll⁻¹ Z_lq dU + (∂x_l/∂ω) dω
-        series, point = problem.balance(solution.samples).series, solution.point
+        series, point = problem.balance(solution.samples).series, solution.condensed
         change = series.phasors(direction[:-1].reshape(solution.unknowns.shape) * size)
         retained = series.phasors(solution.unknowns)
         interior = problem.condensation.interior_slope(point, retained) * (direction[-1] * width)

@@ -1,12 +1,14 @@
 """Floquet multipliers of a point of a curve."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from dalembert.arguments import takes_checked
 from dalembert.errors import require_known
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import equations
-from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.harmonic_balance import STIFFNESS, HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import restarted
 from dalembert.vibration.stability.stability import AUTO, HILL, TIME_MAP, exponents
@@ -54,7 +56,8 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     (0.513417, 0.513417)
     """
     require_known("way", way, (AUTO, HILL, TIME_MAP), "floquet_multipliers")
-    problem = equations(system, HarmonicBalance(**curve.provenance["method"]), stability=way != HILL)
+    method = replace(HarmonicBalance(**curve.provenance["method"]), solver=STIFFNESS)
+    problem = equations(system, method, stability=way != HILL)
     begin = restarted(problem, curve, point, "floquet_multipliers")
     factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
     return factors[np.argsort(-np.abs(factors), kind="stable")]

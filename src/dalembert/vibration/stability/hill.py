@@ -35,8 +35,8 @@ def hill(problem: Equations, solution: Solution) -> np.ndarray:
     orders = problem.method.orders
     # The motion may have odd harmonics only; its disturbances may have any.
     every = Fourier(tuple(range(orders[-1] + 1)), solution.samples)
-    balance = problem.balance(solution.samples)
-    linear = balance.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
+    balance, point = problem.stiffness_balance(solution.samples), solution.condensed
+    linear = balance.linear(point.stiffness, point.force, solution.unknowns)
     system = Uncondensed(problem.lowered, problem.condensation, every, problem.method.events)
     # All harmonics up to the highest: disturbances of a symmetric motion need not be symmetric.
     linear, unknowns = (in_orders(part, orders, every.orders) for part in (linear, solution.unknowns))

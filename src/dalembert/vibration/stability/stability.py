@@ -106,7 +106,7 @@ def _sign(problem: Equations, solution: Solution) -> float:
         return solution.tangent.sign
     unknowns = in_orders(solution.unknowns, problem.method.orders, every.method.orders)
     point = every.condensation.at(solution.omega)
-    return every.balance(solution.samples).linearised(point, unknowns)[1].sign
+    return every.stiffness_balance(solution.samples).linearised(point, unknowns)[1].sign
 
 
 def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
@@ -142,8 +142,8 @@ def _finer(finer: Equations, problem: Equations, solution: Solution) -> np.ndarr
 
 
 def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
-    balance = problem.balance(solution.samples)
-    linear = balance.linear(solution.point.stiffness, solution.point.force, solution.unknowns)
+    point = solution.condensed
+    linear = problem.stiffness_balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
     series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
     # The map goes from sample to sample, and so do the states that it takes from the elements.
     system = Uncondensed(problem.lowered, problem.condensation, series, events=False)

@@ -1,0 +1,153 @@
+r"""The equations of harmonic balance at the rows of the elements alone, by receptances.
+
+With the receptance G of the structure whose contacts stick, with stiffnesses r, the displacements u of all rows obey
+
+.. math:: R(u, \omega) = u - u_\mathrm{lin}(\omega) + G(\omega)\,[\lambda(u) - r u] = 0,
+
+where :math:`u_\mathrm{lin}` are those by the loads while all contacts stick. A contact that does what its reference
+says has :math:`\lambda - r u` constant: it adds no column to the Jacobian
+:math:`1 + G\,(\partial\lambda/\partial u - r)`. The solution does not depend on r.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.vibration.balance.balance import Evaluation
+from dalembert.vibration.balance.receptance_tangent import ActiveCells, ReceptanceTangent
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, law_numbers, penalties
+from dalembert.vibration.interface.receptances import ReceptancePoint
+from dalembert.vibration.laws.contact_sums import ContactSums, Shape, sums_for
+from dalembert.vibration.laws.friction_law import SEPARATED, STUCK
+from dalembert.vibration.laws.law_block import LawSums
+
+ACTIVE = 1e-11
+"""Varying force beyond that of the reference, as part of that, above which a contact is active."""
+
+
+@dataclass(frozen=True)
+class ReceptanceBalance:
+    """The elements of a system and a series, ready to be balanced by receptances; contacts are elastic ones.
+
+    ``reference`` (rows,): stiffness of each row while its contact sticks; ``events``: as `Balance` takes it.
+    """
+
+    lowered: Lowered
+    series: Fourier
+    reference: np.ndarray
+    events: bool = True
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and coefficients."""
+        return len(self.reference), self.series.count
+
+    def displacements(self, unknowns: np.ndarray) -> np.ndarray:
+        """Of all rows that elements see, (rows, coefficients): the unknowns themselves."""
+        return unknowns
+
+    def stuck(self, point: ReceptancePoint) -> np.ndarray:
+        """Unknowns where all elements do what their reference says."""
+        return point.linear
+
+    def linearised(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, ReceptanceTangent]:
+        """Residual at a point, with its exact Jacobian and its derivative by ω."""
+        evaluation, deviation = self._evaluated(point, unknowns)
+        slope = point.rate * point.respond_slope(deviation) - point.linear_slope
+        by_omega = np.zeros_like(unknowns)
+        cells = tuple(self._active(point.omega, unknowns, deviation, evaluation.states, by_omega))
+        if np.any(by_omega):
+            slope += point.rate * point.respond(by_omega)
+        return evaluation, ReceptanceTangent(point, slope, cells)
+
+    def at(self, point: ReceptancePoint, unknowns: np.ndarray) -> Evaluation:
+        """Residual at a point."""
+        return self._evaluated(point, unknowns)[0]
+
+    def deviation(self, omega: float, unknowns: np.ndarray) -> np.ndarray:
+        """Forces of the elements beyond those of their reference, λ - r u, (rows, coefficients)."""
+        return self._forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
+
+    def _evaluated(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
+        forces, states = self._forces(point.omega, unknowns)
+        deviation = forces - self.reference[:, None] * unknowns
+        moved = point.respond(deviation)
+        residual = unknowns - point.linear + moved
+        return Evaluation(residual, forces, states, point.load + norm(moved)), deviation
+
+    def _forces(self, omega: float, unknowns: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+        acting, states = np.zeros_like(unknowns), []
+        for rows, element in self.lowered.functions:
+            acting[rows] += element.law(unknowns[rows] @ self.series.synthesis.T)[0] @ self.series.analysis.T
+        for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
+            np.add.at(acting, block.rows, sums.forces(unknowns[block.rows], omega))
+        for block, sums in zip(self.lowered.blocks, self._sums, strict=True):
+            force, block_states = sums.forces(unknowns[block.rows])
+            # Cells of an Iwan contact share their rows: `+=` with an index array would add only one of them.
+            np.add.at(acting, block.rows, force)
+            states.append(block_states)
+        return acting, tuple(states)
+
+    def _active(
+        self, omega: float, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...],
+        by_omega: np.ndarray,
+    ) -> Iterator[ActiveCells]:  # fmt: skip
+        """Yield Jacobians of the elements that do not do what their reference says; add their slopes by ω."""
+        series = self.series
+        for rows, element in self.lowered.functions:
+            slopes = element.law(unknowns[rows] @ series.synthesis.T)[1]
+            # G = A diag(∂λ/∂u) S, as in `Balance`.
+            local = np.swapaxes(series.analysis @ (slopes[:, :, :, None] * series.synthesis), 1, 2)
+            yield self._beyond(rows[None], local.reshape(1, len(rows) * series.count, -1))
+        for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
+            _, local, slope = sums.with_slopes(unknowns[block.rows], omega)
+            np.add.at(by_omega, block.rows, slope)
+            yield self._beyond(block.rows, local)
+        for block, seen in zip(self.lowered.blocks, states, strict=True):
+            moving = self._moving(block, unknowns, deviation, seen)
+            if not moving.any():
+                continue
+            rows = block.rows[moving]
+            _, _, local = self._sums_of(block, moving).with_slopes(unknowns[rows])
+            yield self._beyond(rows, local)
+
+    def _moving(
+        self, block: FrictionBlock, unknowns: np.ndarray, deviation: np.ndarray, states: np.ndarray
+    ) -> np.ndarray:
+        """Whether contacts are active, (cells,): their force differs from that of their reference by more than a
+        constant normal one, or they are in another state. A slider that moves before the motion is periodic, or slips
+        between two samples, shows in the force alone.
+        """
+        rows = block.rows
+        reference, size = self.reference[rows], np.abs(unknowns[rows]).max(axis=(1, 2))
+        beyond = np.abs(deviation[rows])
+        if block.normal:
+            beyond[:, -1, : self.series.mean] = 0.0
+        expected = np.where(reference[:, -1] > 0, STUCK, SEPARATED)
+        varies = beyond.max(axis=(1, 2)) > ACTIVE * penalties(block).max(axis=1) * size
+        return varies | np.any(states != expected[:, None], axis=1)
+
+    def _beyond(self, rows: np.ndarray, local: np.ndarray) -> ActiveCells:
+        """Cells with their Jacobians (cells, columns · coefficients, ...), less their reference."""
+        blocks = local.copy()
+        diagonal = np.arange(blocks.shape[1])
+        blocks[:, diagonal, diagonal] -= np.repeat(self.reference[rows], self.series.count, axis=1)
+        return ActiveCells(rows, blocks)
+
+    @cached_property
+    def _sums(self) -> list[ContactSums]:
+        every = slice(None)
+        return [self._sums_of(block, every) for block in self.lowered.blocks]
+
+    def _sums_of(self, block: FrictionBlock, cells: np.ndarray | slice) -> ContactSums:
+        # The way of the sums is that of the whole block, so that some contacts alone are summed as among all.
+        numbers, shape = law_numbers(block), Shape(block.tangents, block.normal, block.memory)
+        return sums_for(numbers, shape, self.events)(numbers[cells], shape, self.series)
+
+    @cached_property
+    def _law_sums(self) -> list[LawSums]:
+        return [block.sums(self.series, self.events) for block in self.lowered.laws]

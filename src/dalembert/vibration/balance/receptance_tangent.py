@@ -1,0 +1,181 @@
+r"""The Jacobian of the balance by receptances, and the linear systems with it.
+
+:math:`J = 1 + G\,m`, with one block m for each element that does not do what its reference says. With a the rows of
+these elements, :math:`J x = b` is :math:`(1 + G_{aa} m)\,x_a = b_a` and :math:`x = b - G_a m\,x_a` on all rows.
+
+Few active rows are solved for by a dense matrix. Many are solved for by GMRES: a product costs one block for each
+element and one product with the compliance for all harmonics. Its preconditioner is the inverse of :math:`1 + G m` of
+each element alone, with its own compliance.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from dalembert.vibration.balance.block_tangent import EXACT
+from dalembert.vibration.fourier import real_blocks
+from dalembert.vibration.interface.receptances import ReceptancePoint
+
+DIRECT = 120
+"""Active unknowns up to which a dense system costs less than iterations."""
+SINGLE = 1e-5
+"""Tolerance from which on a compliance in single precision is enough."""
+KRYLOV, CYCLES = 200, 3
+"""Iterations of GMRES in a cycle, and cycles."""
+
+
+@dataclass(frozen=True)
+class ActiveCells:
+    """Elements of a kind: their rows (cells, columns), and the blocks of m (cells, unknowns, unknowns)."""
+
+    rows: np.ndarray
+    blocks: np.ndarray
+
+    @cached_property
+    def share(self) -> bool:
+        """Whether some of them have the same rows, as cells of an Iwan contact do."""
+        return len(np.unique(self.rows)) < self.rows.size
+
+
+@dataclass(frozen=True)
+class ReceptanceTangent:
+    """Derivatives of the residual. ``slope`` (rows, coefficients): by what the path follows; ``cells``: the elements
+    that do not do what their reference says.
+    """
+
+    point: ReceptancePoint
+    slope: np.ndarray
+    cells: tuple[ActiveCells, ...]
+    _kept: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    #: Residual of the linear system of a Newton step, as part of its right-hand side.
+    forcing = 1e-3
+
+    @property
+    def unresisted(self) -> np.ndarray:
+        """Mean motions that nothing resists: the reference leaves none."""
+        return np.zeros((len(self.slope), 0))
+
+    @property
+    def sign(self) -> float:
+        """Sign of the determinant, as far as a dense matrix gives it; else 0."""
+        if not len(self._rows):
+            return 1.0
+        if not self._is_small:
+            return 0.0
+        matrix, pivots = self._factors
+        swapped = np.sum(pivots != np.arange(len(pivots))) % 2
+        return float((-1) ** swapped * np.prod(np.sign(np.diag(matrix))))
+
+    def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
+        """J⁻¹ times right-hand sides (rows, coefficients, columns)."""
+        rows, result = self._rows, right.astype(float)
+        if not len(rows):
+            return result
+        for column in range(right.shape[2]):
+            active = self._solve_active(right[rows, :, column], tolerance)
+            result[:, :, column] -= self.point.respond(self._times(active), rows, tolerance >= SINGLE)
+            # On the active rows the solution is known to the tolerance, elsewhere it follows from them.
+            result[rows, :, column] = active
+        return result
+
+    @cached_property
+    def _rows(self) -> np.ndarray:
+        """Rows of the active elements, in ascending order."""
+        parts = [cells.rows.ravel() for cells in self.cells]
+        return np.unique(np.concatenate(parts)) if parts else np.zeros(0, dtype=int)
+
+    @cached_property
+    def _places(self) -> list[np.ndarray]:
+        """Places of the rows of elements among the active ones, (cells, columns)."""
+        return [np.searchsorted(self._rows, cells.rows) for cells in self.cells]
+
+    @property
+    def _is_small(self) -> bool:
+        return len(self._rows) * self.slope.shape[1] <= DIRECT
+
+    def _times(self, values: np.ndarray) -> np.ndarray:
+        """m times values of the active rows (active, coefficients)."""
+        result = np.zeros_like(values)
+        for places, cells in zip(self._places, self.cells, strict=True):
+            count, size, _ = cells.blocks.shape
+            product = (cells.blocks @ values[places].reshape(count, size, 1)).reshape(*places.shape, -1)
+            if cells.share:
+                np.add.at(result, places, product)
+            else:
+                result[places] += product
+        return result
+
+    def _solve_active(self, right: np.ndarray, tolerance: float) -> np.ndarray:
+        if self._is_small:
+            return lu_solve(self._factors, right.ravel(), check_finite=False).reshape(right.shape)
+        return self._iterated(right, tolerance)
+
+    @cached_property
+    def _factors(self) -> Any:
+        """Factors of 1 + G m among the active rows."""
+        size = self.slope.shape[1]
+        count = len(self._rows) * size
+        response = real_blocks(self.point.among(self._rows), self.point.series.mean).reshape(
+            count, len(self._rows), size
+        )
+        matrix = np.eye(count)
+        for places, cells in zip(self._places, self.cells, strict=True):
+            for place, block in zip(places, cells.blocks, strict=True):
+                columns = response[:, place].reshape(count, -1) @ block
+                matrix.reshape(count, len(self._rows), size)[:, place] += columns.reshape(count, len(place), size)
+        return lu_factor(matrix, check_finite=False, overwrite_a=True)
+
+    def _iterated(self, right: np.ndarray, tolerance: float) -> np.ndarray:
+        shape, size = right.shape, right.size
+        compliance = self._compliance(tolerance >= SINGLE)
+        shapes = self.point.stuck.row_shapes[self._rows]
+
+        def product(values: np.ndarray) -> np.ndarray:
+            values = self._preconditioned(values.reshape(shape))
+            force = self._times(values)
+            static = (compliance @ force.astype(compliance.dtype)).astype(float)
+            return (values + static + shapes @ self.point.with_gains(shapes.T @ force)).ravel()
+
+        # Preconditioned from the right: the residual that GMRES judges is that of the system.
+        operator = LinearOperator((size, size), matvec=product, dtype=float)  # type: ignore[call-arg]
+        solution, failed = gmres(operator, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES)
+        if failed:
+            raise np.linalg.LinAlgError("GMRES does not converge")
+        return self._preconditioned(solution.reshape(shape))
+
+    def _compliance(self, single: bool) -> np.ndarray:
+        key = "single" if single else "double"
+        if key not in self._kept:
+            whole = self.point.stuck.single if single else self.point.stuck.compliance
+            rows = self._rows
+            self._kept[key] = whole if len(rows) == len(whole) else whole[np.ix_(rows, rows)]
+        return self._kept[key]
+
+    def _preconditioned(self, values: np.ndarray) -> np.ndarray:
+        """The inverses of 1 + G m of elements alone times values of the active rows."""
+        result = values.copy()
+        for places, inverses in self._inverses:
+            count, size, _ = inverses.shape
+            result[places] = (inverses @ values[places].reshape(count, size, 1)).reshape(*places.shape, -1)
+        return result
+
+    @cached_property
+    def _inverses(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        size = self.slope.shape[1]
+        result = []
+        for cells, places in zip(self.cells, self._places, strict=True):
+            # Cells of an Iwan contact share their rows: they are one element.
+            _, order, element = np.unique(cells.rows[:, 0], return_index=True, return_inverse=True)
+            blocks = np.zeros((len(order), *cells.blocks.shape[1:]))
+            np.add.at(blocks, element, cells.blocks)
+            rows, columns = cells.rows[order], cells.rows.shape[1]
+            own = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
+            product = (own @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
+            product[:, np.arange(columns * size), np.arange(columns * size)] += 1.0
+            result.append((places[order], np.linalg.inv(product)))
+        return result

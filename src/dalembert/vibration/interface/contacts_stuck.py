@@ -1,0 +1,89 @@
+"""Which contacts stick before the vibration, and the receptances of the structure with them."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from dalembert.errors import SolveError
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties
+from dalembert.vibration.interface.receptances import Receptances
+from dalembert.vibration.interface.stuck_structure import StuckStructure, held, stuck_structure
+from dalembert.vibration.laws.friction_law import GAP, LOAD, NORMAL
+from dalembert.vibration.system.system import StaticForce
+
+ROUNDS = 12
+"""Solutions of the static contact, at most. With any reference the equations are correct."""
+MARGIN = 2.0
+"""Frequency, as a multiple of the highest one so far, for which modes are computed."""
+
+
+@dataclass
+class ContactsStuck:
+    """A system whose contacts stick, but for those that its static forces leave open."""
+
+    lowered: Lowered
+    _structure: StuckStructure | None = field(default=None, repr=False)
+    _known: dict[tuple[int, ...], Receptances] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """Stiffness of each row, N/m, (rows,): that of its contact, or 0 where this is open or the row has none."""
+        closed = self._stiffnesses([np.ones(len(block.rows), dtype=bool) for block in self.lowered.blocks])
+        try:
+            return self._at_rest(closed)
+        except SolveError:
+            # A part that only open contacts may hold: all of them count as closed.
+            return closed
+
+    def receptances(self, series: Fourier, loads: np.ndarray, omega: float) -> Receptances:
+        """Receptances at ω, and near it, with the harmonics of a series. ``loads`` (orders, n): their phasors."""
+        highest = max(series.orders) * omega
+        if self._structure is None or not self._structure.is_fast_enough(highest):
+            lowered = self.lowered
+            self._structure = stuck_structure(
+                lowered.structure, lowered.matrix, self.reference, MARGIN * highest, self._structure
+            )
+            self._known.clear()
+        if series.orders not in self._known:
+            self._known[series.orders] = Receptances(self._structure, series, loads)
+        return self._known[series.orders]
+
+    def _at_rest(self, closed: np.ndarray) -> np.ndarray:
+        """Stiffnesses of the rows where contacts are closed under the static forces, and none slips."""
+        lowered, reference = self.lowered, closed
+        force = np.zeros(lowered.structure.size)
+        for entry in lowered.forces:
+            if isinstance(entry, StaticForce):
+                force[lowered.structure.dofs.index(entry.dof)] += np.real(entry.value)
+        for _ in range(ROUNDS if any(block.normal for block in lowered.blocks) else 0):
+            pushed = np.zeros(len(reference))
+            for block in lowered.blocks:
+                if block.normal:
+                    # r u - λ of a contact that stays in its state: k_n g where it is closed, N_0 where it is open.
+                    rows, numbers = block.rows[:, -1], block.numbers
+                    still = np.where(reference[rows] > 0, numbers[:, NORMAL] * numbers[:, GAP], numbers[:, LOAD])
+                    np.add.at(pushed, rows, still)
+            solve = held(lowered.structure, lowered.matrix, reference)
+            moved = lowered.matrix @ solve(force + lowered.matrix.T @ pushed)
+            better = self._stiffnesses([_closed(block, moved) for block in lowered.blocks])
+            if np.array_equal(better, reference):
+                break
+            reference = better
+        return reference
+
+    def _stiffnesses(self, closed: list[np.ndarray]) -> np.ndarray:
+        """Stiffnesses of the rows (rows,) where some contacts of each block are closed."""
+        result = np.zeros(len(self.lowered.row_names))
+        for block, which in zip(self.lowered.blocks, closed, strict=True):
+            np.add.at(result, block.rows, which[:, None] * penalties(block))
+        return result
+
+
+def _closed(block: FrictionBlock, moved: np.ndarray) -> np.ndarray:
+    """Whether contacts are closed where the rows are displaced like this, (cells,)."""
+    if not block.normal:
+        return np.ones(len(block.rows), dtype=bool)
+    numbers = block.numbers
+    return numbers[:, LOAD] + numbers[:, NORMAL] * (moved[block.rows[:, -1]] - numbers[:, GAP]) > 0

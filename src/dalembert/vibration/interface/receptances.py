@@ -1,0 +1,190 @@
+r"""Receptances of a structure at the rows of its elements, at any frequency, without a factorisation there.
+
+With the compliance G_0 and the modes of the structure whose contacts stick
+(:mod:`dalembert.vibration.interface.stuck_structure`),
+
+.. math:: G(s) = B (K_r - s^2 M + i s C + i\,\mathrm{sign}(s) D)^{-1} B^T
+          = G_0 + B V [(1 - s^2 \mu + i s \hat C + i\,\mathrm{sign}(s) \hat D)^{-1} - 1] V^T B^T.
+
+With all modes this is exact. Without the fast ones it is modal acceleration: their compliance is in :math:`G_0`, and
+what is left out of each is its inertia, :math:`s^2\mu` of it.
+"""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.stuck_structure import StuckStructure
+
+FULL = 0.5
+"""Part of the rows from which on a product with some columns of the compliance takes all of them."""
+
+
+@dataclass(frozen=True)
+class ReceptancePoint:
+    """Receptances at one frequency. ``omega``: rad/s; ``frequencies`` (orders,): h ω; ``gains``, ``gain_slopes``
+    (orders, modes) or (orders, modes, modes): the bracket of the formula and its derivative by ω; ``linear``,
+    ``linear_slope`` (rows, coefficients): displacements of the rows under the loads while all contacts stick, m, and
+    their derivative by what the path follows; ``forced`` (orders, n): phasors of the loads; ``rate``: derivative of ω
+    by what the path follows: 1 or 0.
+    """
+
+    stuck: StuckStructure
+    series: Fourier
+    omega: float
+    frequencies: np.ndarray
+    gains: np.ndarray
+    gain_slopes: np.ndarray
+    linear: np.ndarray
+    linear_slope: np.ndarray
+    forced: np.ndarray
+    rate: float = 1.0
+    kept: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    #: The equations are of displacements: no stiffness scales them.
+    stiffest = 1.0
+    #: The reference holds all parts.
+    held = True
+
+    @cached_property
+    def load(self) -> float:
+        """Norm of the displacements by the loads."""
+        return norm(self.linear)
+
+    @property
+    def resonates(self) -> bool:
+        """Whether a mode has no dynamic stiffness at a harmonic that forces act in."""
+        return not np.all(np.isfinite(self.linear))
+
+    def respond(self, forces: np.ndarray, rows: np.ndarray | None = None, single: bool = False) -> np.ndarray:
+        """G times forces on all rows (rows, coefficients), or on some. ``single``: compliance in single precision."""
+        # The mean has no inertia: its gain is zero.
+        return self._static(forces, rows, single) + self._modal(self.gains, forces, rows)
+
+    def respond_slope(self, forces: np.ndarray) -> np.ndarray:
+        """The derivative of G by ω times forces (rows, coefficients)."""
+        return self._modal(self.gain_slopes, forces, None)
+
+    def among(self, rows: np.ndarray) -> np.ndarray:
+        """G at some rows, (orders, rows, rows)."""
+        shapes = self.stuck.row_shapes[rows]
+        gained = shapes * self.gains[:, None, :] if self.gains.ndim == 2 else shapes @ self.gains
+        return self.stuck.compliance[np.ix_(rows, rows)] + gained @ shapes.T
+
+    def motion(self, forces: np.ndarray, dofs: np.ndarray | None = None) -> np.ndarray:
+        """Coefficients of the displacements of all degrees of freedom (n, coefficients), or of some (dofs, ...).
+
+        ``forces`` (rows, coefficients): what the elements' forces differ from those of their reference.
+        """
+        stuck, series = self.stuck, self.series
+        loads = series.coefficients(self.forced)
+        shapes = stuck.shapes if dofs is None else stuck.shapes[dofs]
+        if dofs is None or len(dofs) > MANY * series.count:
+            static = stuck.solve(loads - stuck.rows.T @ forces)
+            static = static if dofs is None else static[dofs]
+        else:
+            static = self._static_loads(dofs) - stuck.recovery(dofs) @ forces
+        modal = self.with_gains(stuck.shapes.T @ loads - stuck.row_shapes.T @ forces)
+        return static + shapes @ modal
+
+    def loaded(self, part: float) -> "ReceptancePoint":
+        """The same with a part of the varying loads, and derivatives by that part."""
+        varies = self.frequencies[:, None] > 0
+        series = self.series
+        varying = series.coefficients(np.where(varies, series.phasors(self.linear), 0.0))
+        return replace(
+            self, linear=self.linear + (part - 1.0) * varying, linear_slope=varying,
+            gain_slopes=np.zeros_like(self.gain_slopes), rate=0.0,
+            forced=np.where(varies, part, 1.0) * self.forced, kept={},
+        )  # fmt: skip
+
+    def _static_loads(self, dofs: np.ndarray) -> np.ndarray:
+        key = f"loads {dofs.tobytes()!r}"
+        if key not in self.kept:
+            self.kept[key] = self.stuck.solve(self.series.coefficients(self.forced))[dofs]
+        return self.kept[key]
+
+    def _static(self, forces: np.ndarray, rows: np.ndarray | None, single: bool) -> np.ndarray:
+        compliance = self.stuck.single if single else self.stuck.compliance
+        forces = forces.astype(compliance.dtype, copy=False)
+        if rows is None:
+            return compliance @ forces
+        if len(rows) < FULL * len(compliance):
+            # The compliance is symmetric: its rows are its columns, and lie side by side in memory.
+            return compliance[rows].T @ forces
+        placed = np.zeros((len(compliance), forces.shape[1]), compliance.dtype)
+        placed[rows] = forces
+        return compliance @ placed
+
+    def _modal(self, gains: np.ndarray, forces: np.ndarray, rows: np.ndarray | None) -> np.ndarray:
+        shapes = self.stuck.row_shapes
+        among = (shapes if rows is None else shapes[rows]).T @ forces
+        return shapes @ self.with_gains(among, gains)
+
+    def with_gains(self, modal: np.ndarray, gains: np.ndarray | None = None) -> np.ndarray:
+        """Gains, or their slopes, times coefficients of modal forces (modes, coefficients)."""
+        gains = self.gains if gains is None else gains
+        phasors = self.series.phasors(modal)
+        turned = gains * phasors if gains.ndim == 2 else (gains @ phasors[:, :, None])[:, :, 0]
+        return self.series.coefficients(turned)
+
+
+MANY = 8
+"""Observed degrees of freedom, in parts of the coefficients, above which all of them are solved for at each point."""
+
+
+@dataclass(frozen=True)
+class Receptances:
+    """A structure whose contacts stick, with the harmonics of a series. ``loads`` (orders, n): phasors."""
+
+    stuck: StuckStructure
+    series: Fourier
+    loads: np.ndarray
+
+    def at(self, omega: float) -> ReceptancePoint:
+        """The receptances at ω, rad/s."""
+        s = np.array(self.series.orders, dtype=float) * omega
+        gains, slopes = self._gains(s)
+        static, modal = self._loaded
+        shapes = self.stuck.row_shapes
+
+        def moved(gain: np.ndarray) -> np.ndarray:
+            turned = gain * modal if gain.ndim == 2 else (gain @ modal[:, :, None])[:, :, 0]
+            return shapes @ self.series.coefficients(turned)
+
+        return ReceptancePoint(
+            self.stuck, self.series, omega, s, gains, slopes, static + moved(gains), moved(slopes), self.loads,
+            kept=self._kept,
+        )  # fmt: skip
+
+    @cached_property
+    def _kept(self) -> dict[str, Any]:
+        return {}
+
+    @cached_property
+    def _loaded(self) -> tuple[np.ndarray, np.ndarray]:
+        """Static displacements of the rows under the loads (rows, coefficients), and modal loads (orders, modes)."""
+        loads = self.series.coefficients(self.loads)
+        static, pushed = np.zeros((len(self.stuck.reference), loads.shape[1])), np.any(loads, axis=0)
+        static[:, pushed] = self.stuck.rows @ self.stuck.solve(loads[:, pushed])
+        return static, self.loads @ self.stuck.shapes
+
+    def _gains(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """1/q - 1 with q = 1 - s²μ + i s c + i sign(s) d, and its derivative by ω."""
+        stuck, orders = self.stuck, np.array(self.series.orders, dtype=float)
+        full = stuck.damping.ndim == 2 or stuck.loss.ndim == 2
+        inertias, damping, loss = (
+            np.diag(part) if full and part.ndim == 1 else part for part in (stuck.inertias, stuck.damping, stuck.loss)
+        )
+        s, orders = (values.reshape(-1, *[1] * inertias.ndim) for values in (s, orders))
+        # q - 1, which is small for fast modes: 1/q - 1 = -(q - 1)/q has no cancellation.
+        beyond = -(s**2) * inertias + 1j * s * damping + 1j * np.sign(s) * loss
+        slope = orders * (-2 * s * inertias + 1j * damping)
+        if not full:
+            return -beyond / (1 + beyond), -slope / (1 + beyond) ** 2
+        inverse = np.linalg.inv(np.eye(beyond.shape[1]) + beyond)
+        return -inverse @ beyond, -inverse @ slope @ inverse

@@ -24,6 +24,7 @@ NAMES = (
     "vibration",
     "events",
     "bolted",
+    "interfaces",
     "plate",
     "flexible",
     "spatial",

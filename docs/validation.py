@@ -60,6 +60,7 @@ AREAS = {
             "Friction in frequency",
             "Friction in frequency and in time",
             "Hysteretic damping",
+            "Interfaces of many contacts",
             "Hysteretic laws in frequency",
             "Paths and stability in frequency",
             "Structures",

@@ -57,6 +57,7 @@ class ReceptanceBalance:
     def linearised(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, ReceptanceTangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
         evaluation, deviation = self._evaluated(point, unknowns)
+        # ∂R/∂ω at fixed u: G' (λ - r u) - u_lin', and G ∂λ/∂ω of laws that see velocities.
         slope = point.rate * point.respond_slope(deviation) - point.linear_slope
         by_omega = np.zeros_like(unknowns)
         cells = tuple(self._active(point.omega, unknowns, deviation, evaluation.states, by_omega))
@@ -73,6 +74,8 @@ class ReceptanceBalance:
         return self._forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
 
     def _evaluated(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
+        # Displacements by the loads and by what contacts do beyond their reference are in balance: the residual is one
+        # of displacements, and needs no stiffness of the structure.
         forces, states = self._forces(point.omega, unknowns)
         deviation = forces - self.reference[:, None] * unknowns
         moved = point.respond(deviation)
@@ -102,18 +105,19 @@ class ReceptanceBalance:
             slopes = element.law(unknowns[rows] @ series.synthesis.T)[1]
             # G = A diag(∂λ/∂u) S, as in `Balance`.
             local = np.swapaxes(series.analysis @ (slopes[:, :, :, None] * series.synthesis), 1, 2)
-            yield self._beyond(rows[None], local.reshape(1, len(rows) * series.count, -1))
+            yield self._beyond(rows[None], local.reshape(1, len(rows) * series.count, -1), self.reference[rows[None]])
         for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
             _, local, slope = sums.with_slopes(unknowns[block.rows], omega)
             np.add.at(by_omega, block.rows, slope)
-            yield self._beyond(block.rows, local)
+            yield self._beyond(block.rows, local, self.reference[block.rows])
         for block, seen in zip(self.lowered.blocks, states, strict=True):
             moving = self._moving(block, unknowns, deviation, seen)
             if not moving.any():
                 continue
             rows = block.rows[moving]
             _, _, local = self._sums_of(block, moving).with_slopes(unknowns[rows])
-            yield self._beyond(rows, local)
+            # Cells of an Iwan contact have parts of the reference of their rows.
+            yield self._beyond(rows, local, self.reference[rows] * penalties(block)[moving] / self._penalties[rows])
 
     def _moving(
         self, block: FrictionBlock, unknowns: np.ndarray, deviation: np.ndarray, states: np.ndarray
@@ -131,12 +135,20 @@ class ReceptanceBalance:
         varies = beyond.max(axis=(1, 2)) > ACTIVE * penalties(block).max(axis=1) * size
         return varies | np.any(states != expected[:, None], axis=1)
 
-    def _beyond(self, rows: np.ndarray, local: np.ndarray) -> ActiveCells:
-        """Cells with their Jacobians (cells, columns · coefficients, ...), less their reference."""
+    def _beyond(self, rows: np.ndarray, local: np.ndarray, reference: np.ndarray) -> ActiveCells:
+        """Cells with their Jacobians (cells, columns · coefficients, ...), less their references (cells, columns)."""
         blocks = local.copy()
         diagonal = np.arange(blocks.shape[1])
-        blocks[:, diagonal, diagonal] -= np.repeat(self.reference[rows], self.series.count, axis=1)
+        blocks[:, diagonal, diagonal] -= np.repeat(reference, self.series.count, axis=1)
         return ActiveCells(rows, blocks)
+
+    @cached_property
+    def _penalties(self) -> np.ndarray:
+        """Stiffness of each row if all of its cells stick, (rows,)."""
+        result = np.zeros(len(self.reference))
+        for block in self.lowered.blocks:
+            np.add.at(result, block.rows, penalties(block))
+        return result
 
     @cached_property
     def _sums(self) -> list[ContactSums]:

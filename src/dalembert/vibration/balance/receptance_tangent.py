@@ -73,6 +73,7 @@ class ReceptanceTangent:
 
     def solve(self, right: np.ndarray, tolerance: float = EXACT) -> np.ndarray:
         """J⁻¹ times right-hand sides (rows, coefficients, columns)."""
+        # The Jacobian is the identity but for the columns of the active rows: a system among these, then one product.
         rows, result = self._rows, right.astype(float)
         if not len(rows):
             return result
@@ -118,6 +119,7 @@ class ReceptanceTangent:
     @cached_property
     def _factors(self) -> Any:
         """Factors of 1 + G m among the active rows."""
+        # 1 + G_aa m, element by element: m is block-diagonal, G_aa full among rows and diagonal among harmonics.
         size = self.slope.shape[1]
         count = len(self._rows) * size
         response = real_blocks(self.point.among(self._rows), self.point.series.mean).reshape(
@@ -138,6 +140,7 @@ class ReceptanceTangent:
         def product(values: np.ndarray) -> np.ndarray:
             values = self._preconditioned(values.reshape(shape))
             force = self._times(values)
+            # One product for all harmonics: G_0 is real. The gains of the modes are complex, but the modes are few.
             static = (compliance @ force.astype(compliance.dtype)).astype(float)
             return (values + static + shapes @ self.point.with_gains(shapes.T @ force)).ravel()
 
@@ -174,6 +177,8 @@ class ReceptanceTangent:
             blocks = np.zeros((len(order), *cells.blocks.shape[1:]))
             np.add.at(blocks, element, cells.blocks)
             rows, columns = cells.rows[order], cells.rows.shape[1]
+            # (1 + G_cc m)⁻¹ with the static G_cc, which is the same for all harmonics: the inertia of a contact's own
+            # compliance matters little, as its modes are the fastest ones.
             own = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
             product = (own @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
             product[:, np.arange(columns * size), np.arange(columns * size)] += 1.0

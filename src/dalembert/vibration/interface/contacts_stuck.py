@@ -65,6 +65,8 @@ class ContactsStuck:
                     rows, numbers = block.rows[:, -1], block.numbers
                     still = np.where(reference[rows] > 0, numbers[:, NORMAL] * numbers[:, GAP], numbers[:, LOAD])
                     np.add.at(pushed, rows, still)
+            # Contacts that the solution opens lose their stiffness, those that it closes get it: the active set of a
+            # problem with a unique solution settles after few rounds.
             solve = held(lowered.structure, lowered.matrix, reference)
             moved = lowered.matrix @ solve(force + lowered.matrix.T @ pushed)
             better = self._stiffnesses([_closed(block, moved) for block in lowered.blocks])

@@ -71,6 +71,7 @@ class ReceptancePoint:
 
     def among(self, rows: np.ndarray) -> np.ndarray:
         """G at some rows, (orders, rows, rows)."""
+        # G_0 + (B V) d (B V)ᵀ; d is diagonal where the damping couples no modes.
         shapes = self.stuck.row_shapes[rows]
         gained = shapes * self.gains[:, None, :] if self.gains.ndim == 2 else shapes @ self.gains
         return self.stuck.compliance[np.ix_(rows, rows)] + gained @ shapes.T
@@ -81,8 +82,10 @@ class ReceptancePoint:
         ``forces`` (rows, coefficients): what the elements' forces differ from those of their reference.
         """
         stuck, series = self.stuck, self.series
+        # x = (K_r - s²M + isC)⁻¹ (f - Bᵀ (λ - r u)): the static part of all modes, and the gains of the kept ones.
         loads = series.coefficients(self.forced)
         shapes = stuck.shapes if dofs is None else stuck.shapes[dofs]
+        # A few degrees of freedom have rows of their own, computed once. For many, a solution at each point is cheaper.
         if dofs is None or len(dofs) > MANY * series.count:
             static = stuck.solve(loads - stuck.rows.T @ forces)
             static = static if dofs is None else static[dofs]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from dalembert.errors import DataError, InputError, ModelError, require_known
+from dalembert.errors import DataError, InputError, ModelError, SolveError, require_known
 from dalembert.forward import Checkpoint, Executor, ForwardModel, Recorded, on_cluster
 from dalembert.notebook_display import Displayed
 from dalembert.parameters import Parameters
@@ -177,12 +177,18 @@ class Study(Displayed):
 
     def equations(self) -> "Equations":
         """The structure's equations at the first guesses; what nothing holds is found here."""
-        from dalembert.vibration.balance.equations import equations
+        from dalembert.vibration.balance.equations import chosen_solver, equations
+        from dalembert.vibration.interface.lowering import lower
 
         system = self.system()
         balance = self.balance.keeping(system.highest_harmonic).first()
         with naming("model"):
-            result = equations(system, balance)
+            solver = chosen_solver(lower(system), balance, stability=False)
+            result = equations(system, replace(balance, solver=solver))
+        if result.by_receptances:
+            with placed(self.file.model.holding, SolveError):
+                result.contacts_stuck.reference  # noqa: B018
+            return result
         result.lowered.coordinates  # noqa: B018 (contacts that cannot be told apart are told as such)
         with placed(self.file.model.holding, ModelError):
             result.condensation  # noqa: B018

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, SolveError
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.first_guesses import first_guesses
@@ -18,7 +18,7 @@ from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import Condensation, norm
-from dalembert.vibration.interface.contacts_stuck import ContactsStuck
+from dalembert.vibration.interface.contacts_stuck import ContactsStuck, KnownStructures
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.laws.law_block import LawBlock
@@ -253,10 +253,13 @@ def equations(
     residuals: bool = True,
     stability: bool = False,
     derivatives: bool = False,
+    highest: float = 0.0,
+    known: KnownStructures | None = None,
 ) -> Equations:
     """Return the equations of a system, their kernels compiled or loaded. ``checkpoint``: where solutions are stored;
     ``residuals``, ``stability``, ``derivatives``: what is computed besides residuals with their Jacobians: residuals
-    alone (:meth:`Equations.solve` needs them), the stability of solutions by the time map, derivatives by parameters.
+    alone (:meth:`Equations.solve` needs them), the stability of solutions by the time map, derivatives by parameters;
+    ``highest``: largest angular frequency of the motions, rad/s; ``known``: structures of other systems.
     Parts on degrees of freedom that the structure lacks, odd harmonics alone where a force has a mean or even
     harmonics, rigid contacts that depend on each other, and mean forces along a motion that nothing holds are refused.
     """
@@ -264,7 +267,8 @@ def equations(
     if method.odd_only:
         _require_symmetry(lowered)
     prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
-    return Equations(lowered, method, checkpoint)
+    stuck = ContactsStuck(lowered, highest, KnownStructures() if known is None else known)
+    return Equations(lowered, method, checkpoint, _stuck=stuck)
 
 
 LARGE = 500
@@ -285,9 +289,25 @@ def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) ->
         )
     if method.solver != AUTO:
         return method.solver
-    least = method.first()
-    unknowns = len(lowered.row_names) * (2 * len(least.orders) - (least.orders[0] == 0))
-    return RECEPTANCE if lowered.blocks and not (rigid or stability) and unknowns > LARGE else STIFFNESS
+    orders = method.first().orders
+    unknowns = len(lowered.row_names) * (2 * len(orders) - (orders[0] == 0))
+    if rigid or stability or not lowered.blocks or unknowns <= LARGE:
+        return STIFFNESS
+    try:
+        ContactsStuck(lowered.real).reference  # noqa: B018
+    except SolveError:  # a part moves freely, which dynamic stiffnesses allow
+        return STIFFNESS
+    return RECEPTANCE
+
+
+def by_stiffness(method: HarmonicBalance, where: str) -> HarmonicBalance:
+    """Return the method with dynamic stiffnesses; InputError where receptances are asked for."""
+    if method.solver == RECEPTANCE:
+        raise InputError(
+            f"{where}: the solver of the harmonic balance is 'receptance', which only curves and models of responses "
+            "take. Use solver='auto'"
+        )
+    return replace(method, solver=STIFFNESS)
 
 
 RESAMPLED = (1.25, 2.0, 1.5, 4.0)

@@ -1,6 +1,7 @@
 """Guesses of a first solution: the place of rest, sticking or missing contacts, the end of a path over the force."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
@@ -12,6 +13,7 @@ from dalembert.vibration.balance.arc_length import along
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct
+from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import CondensedStructure, norm
 from dalembert.vibration.interface.lowering import ELASTIC
@@ -34,8 +36,11 @@ MOST_STEPS = 120
 def first_guesses(balance: AnyBalance, method: HarmonicBalance, point: Point) -> Iterator[np.ndarray]:
     """Yield guesses of a first point; the later ones are made if those before lead to no solution."""
     if isinstance(point, ReceptancePoint):
-        # The motion while all contacts stick, then a path over the varying forces.
+        # The motion while all contacts stick, that without contacts, then a path over the varying forces.
+        assert isinstance(balance, ReceptanceBalance)  # that of the point
         yield point.linear
+        with suppress(np.linalg.LinAlgError):  # contacts alone hold a part
+            yield balance.without_contacts(point)
         if method.halvings:
             yield Loading(balance, replace(method, resolution=RESOLUTION), point).last()
         return

@@ -25,6 +25,8 @@ from dalembert.vibration.laws.contact_sums import ContactSums, Shape, sums_for
 from dalembert.vibration.laws.friction_law import SEPARATED, STUCK
 from dalembert.vibration.laws.law_block import LawSums
 
+GUESSED = 1e-3
+"""Accuracy of a guess."""
 ACTIVE = 1e-11
 """Varying force beyond that of the reference, as part of that, above which a contact is active."""
 
@@ -54,6 +56,13 @@ class ReceptanceBalance:
         """Unknowns where all elements do what their reference says."""
         return point.linear
 
+    def without_contacts(self, point: ReceptancePoint) -> np.ndarray:
+        """Unknowns where no element acts: (1 - G r) u = u_lin. LinAlgError where elements alone hold a part."""
+        rows = np.flatnonzero(self.reference)
+        blocks = -self.reference[rows, None, None] * np.eye(self.series.count)
+        tangent = ReceptanceTangent(point, np.zeros_like(point.linear), (ActiveCells(rows[:, None], blocks),))
+        return tangent.solve(point.linear[:, :, None], GUESSED)[:, :, 0]
+
     def linearised(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, ReceptanceTangent]:
         """Residual at a point, with its exact Jacobian and its derivative by ω."""
         evaluation, deviation = self._evaluated(point, unknowns)
@@ -71,28 +80,32 @@ class ReceptanceBalance:
 
     def deviation(self, omega: float, unknowns: np.ndarray) -> np.ndarray:
         """Forces of the elements beyond those of their reference, λ - r u, (rows, coefficients)."""
-        return self._forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
+        return self.forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
 
     def _evaluated(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
         # Displacements by the loads and by what contacts do beyond their reference are in balance: the residual is one
         # of displacements, and needs no stiffness of the structure.
-        forces, states = self._forces(point.omega, unknowns)
+        forces, states = self.forces(point.omega, unknowns)
         deviation = forces - self.reference[:, None] * unknowns
         moved = point.respond(deviation)
         residual = unknowns - point.linear + moved
         return Evaluation(residual, forces, states, point.load + norm(moved)), deviation
 
-    def _forces(self, omega: float, unknowns: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-        acting, states = np.zeros_like(unknowns), []
+    def forces(self, omega: float, unknowns: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+        """Forces of the elements (rows, coefficients), complex where a number of theirs is, and states of contacts."""
+        series, parts, states = self.series, [], []
         for rows, element in self.lowered.functions:
-            acting[rows] += element.law(unknowns[rows] @ self.series.synthesis.T)[0] @ self.series.analysis.T
+            parts.append((rows, element.law(unknowns[rows] @ series.synthesis.T)[0] @ series.analysis.T))
         for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
-            np.add.at(acting, block.rows, sums.forces(unknowns[block.rows], omega))
+            parts.append((block.rows, sums.forces(unknowns[block.rows], omega)))
         for block, sums in zip(self.lowered.blocks, self._sums, strict=True):
             force, block_states = sums.forces(unknowns[block.rows])
-            # Cells of an Iwan contact share their rows: `+=` with an index array would add only one of them.
-            np.add.at(acting, block.rows, force)
+            parts.append((block.rows, force))
             states.append(block_states)
+        acting = np.zeros(unknowns.shape, np.result_type(float, *(force for _, force in parts)))
+        for rows, force in parts:
+            # Cells of an Iwan contact share their rows: `+=` with an index array would add only one of them.
+            np.add.at(acting, rows, force)
         return acting, tuple(states)
 
     def _active(

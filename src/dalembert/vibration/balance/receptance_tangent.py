@@ -84,6 +84,12 @@ class ReceptanceTangent:
             result[rows, :, column] = active
         return result
 
+    def beyond(self, change: np.ndarray) -> np.ndarray:
+        """m times a change of the displacements of all rows (rows, coefficients): of forces beyond the reference."""
+        result = np.zeros_like(change)
+        result[self._rows] = self._times(change[self._rows])
+        return result
+
     @cached_property
     def _rows(self) -> np.ndarray:
         """Rows of the active elements, in ascending order."""

@@ -16,7 +16,10 @@ import numpy as np
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
+from dalembert.vibration.balance.receptance_tangent import ReceptanceTangent
 from dalembert.vibration.interface.lowering import Lowered
+from dalembert.vibration.interface.receptances import ReceptancePoint
 
 STEP = 1e-30
 """Size of the imaginary step; second-order terms vanish below the rounding of the first."""
@@ -27,6 +30,8 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
 
     ``solution``: converged; ``perturbed``: the system along each parameter, moved by a complex step.
     """
+    if isinstance(solution.point, ReceptancePoint):
+        return _by_receptances(problem, solution, solution.point, perturbed)
     series, condensation, point = problem.balance(solution.samples).series, problem.condensation, solution.condensed
     retained = series.phasors(solution.unknowns)
     motion = condensation.full(retained, point.interior(retained))
@@ -60,6 +65,35 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
         interior = interior - (point.follow @ shift[:, :, None])[:, :, 0]
         result.append(series.coefficients(condensation.full(shift, interior)))
     return np.stack(result)
+
+
+def _by_receptances(
+    problem: Equations, solution: Solution, point: ReceptancePoint, perturbed: Sequence[Lowered]
+) -> np.ndarray:
+    r"""Return the same by receptances. With x the motion and r kept,
+    :math:`\partial R/\partial p = -B Z_r^{-1} (f' - Z' x) + G\, \partial\lambda/\partial p`.
+    """
+    series, tangent, rows = point.series, solution.tangent, point.stuck.rows
+    balance = problem.balance(solution.samples)
+    assert isinstance(balance, ReceptanceBalance)
+    assert isinstance(tangent, ReceptanceTangent)
+    motion = series.phasors(point.motion(balance.deviation(point.omega, solution.unknowns)))
+    pushes, forces, residuals = [], [], []
+    for system in perturbed:
+        push = series.phasors(_step(system.loads(series))) - _unbalanced(system, point.frequencies, motion)
+        elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
+        acting, _ = replace(balance, lowered=elements).forces(point.omega, solution.unknowns)
+        pushes.append(series.coefficients(push))
+        forces.append(_step(acting))
+        residuals.append(point.respond(forces[-1]) - rows @ point.answer(pushes[-1]))
+    moved = -np.moveaxis(tangent.solve(np.stack(residuals, axis=2)), 2, 0)
+    # dx/dp = Z_r⁻¹ (f' - Z' x - Bᵀ (∂λ/∂p + m du/dp)): the motion by what the parameter adds to all forces.
+    return np.stack(
+        [
+            point.answer(push - rows.T @ (force + tangent.beyond(change)))
+            for push, force, change in zip(pushes, forces, moved, strict=True)
+        ]
+    )
 
 
 def _unbalanced(lowered: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:

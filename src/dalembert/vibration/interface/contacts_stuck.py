@@ -1,9 +1,11 @@
 """Which contacts stick before the vibration, and the receptances of the structure with them."""
 
+import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import issparse
 
 from dalembert.errors import SolveError
 from dalembert.vibration.fourier import Fourier
@@ -16,39 +18,82 @@ from dalembert.vibration.system.system import StaticForce
 ROUNDS = 12
 """Solutions of the static contact, at most. With any reference the equations are correct."""
 MARGIN = 2.0
-"""Frequency, as a multiple of the highest one so far, for which modes are computed."""
+"""Frequency, as a multiple of the highest one, for which modes are computed."""
+
+
+@dataclass
+class KnownStructures:
+    """The last structure whose contacts stick, for systems that differ in other numbers than its own, such as the
+    friction. Where all of them have the same highest frequency, results do not depend on which were computed before.
+    """
+
+    key: bytes = b""
+    structure: StuckStructure | None = None
 
 
 @dataclass
 class ContactsStuck:
-    """A system whose contacts stick, but for those that its static forces leave open."""
+    """A system whose contacts stick, but for those that its static forces leave open. ``highest``: largest angular
+    frequency of its motions, rad/s, as far as it is known.
+    """
 
     lowered: Lowered
-    _structure: StuckStructure | None = field(default=None, repr=False)
-    _known: dict[tuple[int, ...], Receptances] = field(default_factory=dict, repr=False)
+    highest: float = 0.0
+    known: KnownStructures = field(default_factory=KnownStructures, repr=False)
+    _of_series: dict[tuple[int, ...], Receptances] = field(default_factory=dict, repr=False)
 
     @cached_property
     def reference(self) -> np.ndarray:
-        """Stiffness of each row, N/m, (rows,): that of its contact, or 0 where this is open or the row has none."""
+        """Stiffness of each row, N/m, (rows,): that of its contact, or 0 where this is open or the row has none.
+
+        SolveError if a part moves even with closed contacts and stops.
+        """
         closed = self._stiffnesses([np.ones(len(block.rows), dtype=bool) for block in self.lowered.blocks])
         try:
             return self._at_rest(closed)
         except SolveError:
-            # A part that only open contacts may hold: all of them count as closed.
-            return closed
+            # A part that only open contacts, stops or springs that are not linear may hold: all of them count as
+            # closed.
+            with_laws = closed + self._law_stiffnesses()
+            held(self.lowered.structure, self.lowered.matrix, with_laws)
+            return with_laws
 
     def receptances(self, series: Fourier, loads: np.ndarray, omega: float) -> Receptances:
         """Receptances at ω, and near it, with the harmonics of a series. ``loads`` (orders, n): their phasors."""
-        highest = max(series.orders) * omega
-        if self._structure is None or not self._structure.is_fast_enough(highest):
-            lowered = self.lowered
-            self._structure = stuck_structure(
-                lowered.structure, lowered.matrix, self.reference, MARGIN * highest, self._structure
+        highest, lowered, known = max(series.orders) * max(omega, self.highest), self.lowered, self.known
+        if known.key != self._key:
+            known.key, known.structure = self._key, None
+            self._of_series.clear()
+        if known.structure is None or not known.structure.is_fast_enough(highest):
+            known.structure = stuck_structure(
+                lowered.structure, lowered.matrix, self.reference, MARGIN * highest, known.structure
             )
-            self._known.clear()
-        if series.orders not in self._known:
-            self._known[series.orders] = Receptances(self._structure, series, loads)
-        return self._known[series.orders]
+            self._of_series.clear()
+        if series.orders not in self._of_series:
+            self._of_series[series.orders] = Receptances(known.structure, series, loads)
+        return self._of_series[series.orders]
+
+    @cached_property
+    def _key(self) -> bytes:
+        """Hash of all that the structure depends on."""
+        structure, digest = self.lowered.structure, hashlib.sha256()
+        for matrix in (structure.stiffness, structure.mass, structure.damping, structure.loss, self.lowered.matrix):
+            if matrix is not None:
+                parts = (matrix.data, matrix.indices, matrix.indptr) if issparse(matrix) else (matrix,)
+                for part in parts:
+                    digest.update(np.ascontiguousarray(part).tobytes())
+        digest.update(self.reference.tobytes())
+        return digest.digest()
+
+    def _law_stiffnesses(self) -> np.ndarray:
+        """Stiffness of each row by laws where these are closed; that of the structure where it is not known."""
+        result, stiffest = np.zeros(len(self.lowered.row_names)), abs(self.lowered.structure.stiffness).max()
+        for block in self.lowered.laws:
+            closed = np.real(block.element.closed_stiffness(block))
+            np.add.at(result, block.rows, np.where(closed > 0, closed, stiffest))
+        for rows, _ in self.lowered.functions:
+            result[rows] += stiffest
+        return result
 
     def _at_rest(self, closed: np.ndarray) -> np.ndarray:
         """Stiffnesses of the rows where contacts are closed under the static forces, and none slips."""

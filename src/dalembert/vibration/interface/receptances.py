@@ -84,15 +84,20 @@ class ReceptancePoint:
         stuck, series = self.stuck, self.series
         # x = (K_r - s²M + isC)⁻¹ (f - Bᵀ (λ - r u)): the static part of all modes, and the gains of the kept ones.
         loads = series.coefficients(self.forced)
-        shapes = stuck.shapes if dofs is None else stuck.shapes[dofs]
         # A few degrees of freedom have rows of their own, computed once. For many, a solution at each point is cheaper.
-        if dofs is None or len(dofs) > MANY * series.count:
-            static = stuck.solve(loads - stuck.rows.T @ forces)
-            static = static if dofs is None else static[dofs]
+        if dofs is None:
+            return self.answer(loads - stuck.rows.T @ forces)
+        if len(dofs) > MANY * series.count:
+            static = stuck.solve(loads - stuck.rows.T @ forces)[dofs]
         else:
             static = self._static_loads(dofs) - stuck.recovery(dofs) @ forces
         modal = self.with_gains(stuck.shapes.T @ loads - stuck.row_shapes.T @ forces)
-        return static + shapes @ modal
+        return static + stuck.shapes[dofs] @ modal
+
+    def answer(self, loads: np.ndarray) -> np.ndarray:
+        """Displacements under loads on all degrees of freedom while all contacts stick, (n, coefficients) both."""
+        stuck = self.stuck
+        return stuck.solve(loads) + stuck.shapes @ self.with_gains(stuck.shapes.T @ loads)
 
     def loaded(self, part: float) -> "ReceptancePoint":
         """The same with a part of the varying loads, and derivatives by that part."""

@@ -10,7 +10,7 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.threads import single_thread
 from dalembert.units import unit_of
-from dalembert.vibration.balance.equations import equations
+from dalembert.vibration.balance.equations import by_stiffness, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.truncation import (
     SLOW,
@@ -105,7 +105,7 @@ def backbone(
     >>> (2 * np.pi * curve.frequencies).round(3).tolist(), curve.damping.round(3).tolist()
     ([1.342, 1.028, 1.0], [0.0, 0.053, 0.001])
     """
-    method = method or HarmonicBalance()
+    method = by_stiffness(method or HarmonicBalance(), "backbone")
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     posed = _PosedBackbone(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)
     nonlinear_mode, motions = _follow(posed, method.first())

@@ -14,6 +14,7 @@ from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.fourier import synthesis
+from dalembert.vibration.interface.contacts_stuck import ContactsStuck
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.laws.contacts import FrictionContact
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -151,7 +152,9 @@ def _largest(curve: FrequencyCurve) -> int:
 @single_thread()
 def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.ndarray:
     """Coefficients of all degrees of freedom, (size, coefficients), from the unknowns that the curve keeps."""
-    problem = Equations(lower(system).real, HarmonicBalance(**curve.provenance["method"]))
+    lowered, highest = lower(system).real, 2 * np.pi * float(np.max(curve.frequencies))
+    method = HarmonicBalance(**curve.provenance["method"])
+    problem = Equations(lowered, method, _stuck=ContactsStuck(lowered, highest))
     balance, unknowns = problem.balance(int(curve.samples[point])), curve.unknowns[point]
     if unknowns.shape != balance.shape or curve.contacts != problem.lowered.contacts:
         raise InputError(

@@ -19,12 +19,13 @@ from dalembert.parameter import Parameter
 from dalembert.parameters import Parameters
 from dalembert.threads import single_thread
 from dalembert.units import unit_of
-from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.equations import Equations, chosen_solver, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.sensitivity import STEP, sensitivities
 from dalembert.vibration.balance.truncation import ForcedLevel, choice_findings, hardest
 from dalembert.vibration.interface.complex_steps import check_laws, check_numbers
+from dalembert.vibration.interface.contacts_stuck import KnownStructures
 from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.continuation import at_frequencies
@@ -203,18 +204,20 @@ class FrequencyResponse:
 
     @cached_property
     def balance(self) -> HarmonicBalance:
-        """The method with the number of harmonics, which is chosen when it is first needed."""
-        if not self.method.automatic:
-            return self.method
-        curve = frequency_response(self.system(self.parameters.start), self.frequencies, self.method)
-        return replace(self.method, harmonics=curve.orders[-1])
+        """The method with the number of harmonics and the solver, which are chosen when they are first needed."""
+        system = self.system(self.parameters.start)
+        method = replace(self.method, solver=chosen_solver(lower(system), self.method, stability=False))
+        if not method.automatic:
+            return method
+        curve = frequency_response(system, self.frequencies, method)
+        return replace(method, harmonics=curve.orders[-1])
 
     def findings(self, vector: np.ndarray) -> tuple[Finding, ...]:
         """Return the finding on the truncation error at a parameter vector (parameters,), if harmonics were chosen."""
         if not self.method.automatic:
             return ()
         system = self.system(vector)
-        problem = equations(system, self.balance)
+        problem = self._equations(system)
         curve = self.curve(vector)
         points = hardest(curve.unknowns, curve.converged)
         motions = [restarted(problem, curve, point, "FrequencyResponse") for point in points]
@@ -224,7 +227,9 @@ class FrequencyResponse:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the number of harmonics, so that every process computes with the same one."""
-        return {**vars(self), "balance": self.balance}
+        state = {**vars(self), "balance": self.balance}
+        state.pop("_known", None)  # made anew, as it is large
+        return state
 
     def _but(self, **changes: Any) -> "FrequencyResponse":
         """The same model with other frequencies or another method, whose derivatives need no second comparison."""
@@ -232,6 +237,10 @@ class FrequencyResponse:
         vars(model).update({"balance": self.balance} | changes, _compared=self._compared)
         vars(model).pop("_fingerprint", None)
         return model
+
+    def _equations(self, system: VibrationSystem, derivatives: bool = False) -> Equations:
+        highest = 2 * np.pi * float(np.max(self.frequencies))
+        return equations(system, self.balance, derivatives=derivatives, highest=highest, known=self._known)
 
     def system(self, vector: np.ndarray) -> VibrationSystem:
         """The system at a parameter vector (parameters,)."""
@@ -243,7 +252,7 @@ class FrequencyResponse:
 
     @single_thread()
     def _linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        problem = equations(self.system(vector), self.balance, derivatives=True)
+        problem = self._equations(self.system(vector), derivatives=True)
         places = self._places(problem.lowered)
         values = np.empty((len(self.frequencies), len(places)))
         jacobian = np.empty((*values.shape, len(vector)))
@@ -256,6 +265,11 @@ class FrequencyResponse:
                 values[number, channel] = size.of(response[row])
                 jacobian[number, channel] = slopes[:, row] @ size.slope(response[row])
         return values, jacobian / self.parameters.scale
+
+    @cached_property
+    def _known(self) -> KnownStructures:
+        """The structure of the system before, which most parameters of contacts do not change."""
+        return KnownStructures()
 
     @cached_property
     def _compared(self) -> Compared:
@@ -289,7 +303,7 @@ class FrequencyResponse:
 
     def _sizes(self, vector: np.ndarray) -> np.ndarray:
         """Values of the channels, (samples, channels)."""
-        problem = equations(self.system(vector), self.balance)
+        problem = self._equations(self.system(vector))
         places = self._places(problem.lowered)
         responses = (response_of(problem, solution) for solution in self._solutions(problem))
         return np.array([[size.of(response[row]) for row, size in places] for response in responses])

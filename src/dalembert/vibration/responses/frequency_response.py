@@ -186,7 +186,8 @@ class _PosedCurve:
 
     def equations(self, method: HarmonicBalance) -> Equations:
         """The equations of the system with the harmonics of a method."""
-        return equations(self.system, method, self.checkpoint, stability=self.stability)
+        highest = float(np.max(self.omegas))
+        return equations(self.system, method, self.checkpoint, stability=self.stability, highest=highest)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import PathTangent, direction_at, zero_between
-from dalembert.vibration.balance.equations import Equations, equations
+from dalembert.vibration.balance.equations import Equations, by_stiffness, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.balance.truncation import ForcedLevel, Truncation, choice_findings, enough_harmonics, hardest
@@ -113,7 +113,7 @@ def track_resonance(
     ([3.63, 3.68, 5.79], 2.0)
     """
     numbers = values_of(values, "track_resonance", parameter)
-    method = (method or HarmonicBalance()).keeping(highest_order(kind))
+    method = by_stiffness(method or HarmonicBalance(), "track_resonance").keeping(highest_order(kind))
     check_function("track_resonance", builder, [parameter])
     first = builder(**{parameter: float(numbers[0])})
     name = (names := lower(first).structure.dofs).names[row := names.index(dof)]

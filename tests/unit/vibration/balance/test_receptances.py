@@ -13,6 +13,7 @@ from dalembert.vibration import (
     BoucWen,
     CubicSpring,
     ElasticSlider,
+    FrequencyResponse,
     FrictionContact,
     Gap,
     HarmonicBalance,
@@ -23,8 +24,10 @@ from dalembert.vibration import (
     UserElement,
     UserLaw,
     VibrationSystem,
+    backbone,
     floquet_multipliers,
     frequency_response,
+    track_resonance,
 )
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
@@ -269,3 +272,85 @@ def test_the_tangent_of_stuck_contacts_is_the_identity():
     tangent = ReceptanceTangent(point, np.zeros_like(place), ())
     np.testing.assert_array_equal(tangent.solve(place[:, :, None])[:, :, 0], place)
     assert tangent.sign == 1.0
+
+
+def parametrised(
+    inertia: float, spring: float, dashpot: float, friction: float, load: float, contact: float, gap: float,
+    drag_of: float, cubic: float, push: float,
+) -> VibrationSystem:  # fmt: skip
+    """A system each of whose parts has a parameter."""
+    whole = structure()
+    mass, stiffness = whole.mass * (1 + inertia), whole.stiffness + spring * np.diag([0.0, 1.0, *[0.0] * 7])
+    own = Structure(mass, stiffness, whole.dofs, whole.damping + dashpot * np.diag([*[0.0] * 4, 1.0, *[0.0] * 4]))
+    result = VibrationSystem(own)
+    result.add(HarmonicForce("c.x", push, 0.3))
+    result.add(StaticForce("b.z", 0.5))
+    law = ElasticSlider(contact, 4.0, gap)
+    sides = {"tangential": ("x", "y"), "normal": "-z"}
+    result.add(FrictionContact("pair", "a", "b", **sides, friction=friction, preload=load, law=law))
+    cells = Iwan((1.0, 4.0), (0.4, 0.6), 2.0)
+    result.add(FrictionContact("cells", "c", tangential=("y",), friction=friction, preload=1.0, law=cells))
+    result.add(UserLaw("drag", "c.z", function=drag, values=[drag_of]))
+    result.add(UserElement("user", ["a.x"], lambda u: cubic * u**3))
+    return result
+
+
+STARTS = {
+    "inertia": 0.1, "spring": 0.5, "dashpot": 0.2, "friction": 0.4, "load": 0.5, "contact": 3.0, "gap": 0.02,
+    "drag_of": 0.3, "cubic": 0.2, "push": 3.0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", [BY_RECEPTANCES, PLAIN], ids=["events", "plain"])
+def test_sensitivities_are_those_by_dynamic_stiffnesses(method: HarmonicBalance):
+    ranges = {name: (0.9 * value, 1.1 * value) for name, value in STARTS.items()}
+    values, slopes = zip(
+        *(
+            FrequencyResponse(
+                parametrised,
+                ranges,
+                ["a.x harmonic 1", "c.y harmonic 3", "b.z rms"],
+                [0.3, 0.36],
+                replace(method, solver=solver),
+            ).linearise(np.array(list(STARTS.values())))
+            for solver in ("receptance", "stiffness")
+        ),
+        strict=True,
+    )
+    np.testing.assert_allclose(values[0], values[1], rtol=0, atol=1e-10)
+    np.testing.assert_allclose(slopes[0], slopes[1], rtol=0, atol=1e-8 * np.abs(slopes[1]).max())
+
+
+def test_samples_that_share_a_structure_do_not_depend_on_their_order():
+    def joint(friction: float) -> VibrationSystem:
+        return parametrised(**{**STARTS, "friction": friction})
+
+    def model() -> FrequencyResponse:
+        return FrequencyResponse(joint, {"friction": (0.2, 0.6)}, ["a.x peak"], [0.3], BY_RECEPTANCES)
+
+    both = model().evaluate(np.array([[0.3], [0.5]])).values
+    np.testing.assert_array_equal(model().evaluate(np.array([[0.5], [0.3]])).values, both[::-1])
+
+
+@pytest.mark.parametrize(
+    "follow",
+    [
+        lambda system, method: backbone(system, (0.01, 0.1), method=method),
+        lambda system, method: track_resonance(lambda force: system, "force", [1.0], (0.1, 0.2), method, dof="m1"),
+    ],
+)
+def test_backbones_and_peaks_refuse_receptances(follow: Callable[..., object]):
+    with pytest.raises(InputError, match="'receptance', which only curves and models of responses take"):
+        follow(hardening(), HarmonicBalance(3, solver="receptance"))
+
+
+def test_large_forces_begin_without_contacts():
+    posed = hardening()
+    problem = equations(posed, BY_RECEPTANCES)
+    balance, point = problem.balance(64), problem.at(1.0)
+    assert isinstance(balance, ReceptanceBalance)
+    assert isinstance(point, ReceptancePoint)
+    bare = VibrationSystem(posed.structure)
+    bare.add(HarmonicForce("m1", 0.2))
+    expected = frequency_response(bare, np.array([1.0]) / (2 * np.pi), HarmonicBalance(3), check=False).response[0]
+    np.testing.assert_allclose(balance.without_contacts(point), expected[[0, 1]], rtol=0, atol=1e-7)

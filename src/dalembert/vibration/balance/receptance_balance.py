@@ -9,21 +9,19 @@ says has :math:`\lambda - r u` constant: it adds no column to the Jacobian
 :math:`1 + G\,(\partial\lambda/\partial u - r)`. The solution does not depend on r.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from dalembert.vibration.balance.balance import Evaluation
+from dalembert.vibration.balance.elements import Elements
 from dalembert.vibration.balance.receptance_tangent import ActiveCells, ReceptanceTangent
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import norm
-from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, law_numbers, penalties
+from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties
 from dalembert.vibration.interface.receptances import ReceptancePoint
-from dalembert.vibration.laws.contact_sums import ContactSums, Shape, sums_for
 from dalembert.vibration.laws.friction_law import SEPARATED, STUCK
-from dalembert.vibration.laws.law_block import LawSums
 
 GUESSED = 1e-3
 """Accuracy of a guess."""
@@ -42,6 +40,11 @@ class ReceptanceBalance:
     series: Fourier
     reference: np.ndarray
     events: bool = True
+
+    @cached_property
+    def elements(self) -> Elements:
+        """The elements at their rows."""
+        return Elements(self.lowered, self.series, self.events)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -68,8 +71,7 @@ class ReceptanceBalance:
         evaluation, deviation = self._evaluated(point, unknowns)
         # ∂R/∂ω at fixed u: G' (λ - r u) - u_lin', and G ∂λ/∂ω of laws that see velocities.
         slope = point.rate * point.respond_slope(deviation) - point.linear_slope
-        by_omega = np.zeros_like(unknowns)
-        cells = tuple(self._active(point.omega, unknowns, deviation, evaluation.states, by_omega))
+        cells, by_omega = self._active(point.omega, unknowns, deviation, evaluation.states)
         if np.any(by_omega):
             slope += point.rate * point.respond(by_omega)
         return evaluation, ReceptanceTangent(point, slope, cells)
@@ -80,57 +82,33 @@ class ReceptanceBalance:
 
     def deviation(self, omega: float, unknowns: np.ndarray) -> np.ndarray:
         """Forces of the elements beyond those of their reference, λ - r u, (rows, coefficients)."""
-        return self.forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
+        return self.elements.forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
 
     def _evaluated(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
         # Displacements by the loads and by what contacts do beyond their reference are in balance: the residual is one
         # of displacements, and needs no stiffness of the structure.
-        forces, states = self.forces(point.omega, unknowns)
+        forces, states = self.elements.forces(point.omega, unknowns)
         deviation = forces - self.reference[:, None] * unknowns
         moved = point.respond(deviation)
         residual = unknowns - point.linear + moved
         return Evaluation(residual, forces, states, point.load + norm(moved)), deviation
 
-    def forces(self, omega: float, unknowns: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-        """Forces of the elements (rows, coefficients), complex where a number of theirs is, and states of contacts."""
-        series, parts, states = self.series, [], []
-        for rows, element in self.lowered.functions:
-            parts.append((rows, element.law(unknowns[rows] @ series.synthesis.T)[0] @ series.analysis.T))
-        for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
-            parts.append((block.rows, sums.forces(unknowns[block.rows], omega)))
-        for block, sums in zip(self.lowered.blocks, self._sums, strict=True):
-            force, block_states = sums.forces(unknowns[block.rows])
-            parts.append((block.rows, force))
-            states.append(block_states)
-        acting = np.zeros(unknowns.shape, np.result_type(float, *(force for _, force in parts)))
-        for rows, force in parts:
-            # Cells of an Iwan contact share their rows: `+=` with an index array would add only one of them.
-            np.add.at(acting, rows, force)
-        return acting, tuple(states)
-
     def _active(
-        self, omega: float, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...],
-        by_omega: np.ndarray,
-    ) -> Iterator[ActiveCells]:  # fmt: skip
-        """Yield Jacobians of the elements that do not do what their reference says; add their slopes by ω."""
-        series = self.series
-        for rows, element in self.lowered.functions:
-            slopes = element.law(unknowns[rows] @ series.synthesis.T)[1]
-            # G = A diag(∂λ/∂u) S, as in `Balance`.
-            local = np.swapaxes(series.analysis @ (slopes[:, :, :, None] * series.synthesis), 1, 2)
-            yield self._beyond(rows[None], local.reshape(1, len(rows) * series.count, -1), self.reference[rows[None]])
-        for block, sums in zip(self.lowered.laws, self._law_sums, strict=True):
-            _, local, slope = sums.with_slopes(unknowns[block.rows], omega)
-            np.add.at(by_omega, block.rows, slope)
-            yield self._beyond(block.rows, local, self.reference[block.rows])
-        for block, seen in zip(self.lowered.blocks, states, strict=True):
-            moving = self._moving(block, unknowns, deviation, seen)
-            if not moving.any():
-                continue
-            rows = block.rows[moving]
-            _, _, local = self._sums_of(block, moving).with_slopes(unknowns[rows])
-            # Cells of an Iwan contact have parts of the reference of their rows.
-            yield self._beyond(rows, local, self.reference[rows] * penalties(block)[moving] / self._penalties[rows])
+        self, omega: float, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...]
+    ) -> tuple[tuple[ActiveCells, ...], np.ndarray]:
+        """Jacobians of the elements that do not do what their reference says, and slopes of all forces by ω."""
+        moving = [
+            self._moving(block, unknowns, deviation, seen)
+            for block, seen in zip(self.lowered.blocks, states, strict=True)
+        ]
+        slopes = self.elements.slopes(omega, unknowns, moving)
+        cells = [self._beyond(rows, local, self.reference[rows]) for rows, local in slopes.laws]
+        for block, which, (rows, local) in zip(self.lowered.blocks, moving, slopes.contacts, strict=True):
+            if which.any():
+                # Cells of an Iwan contact have parts of the reference of their rows.
+                shares = penalties(block)[which] / self._penalties[rows]
+                cells.append(self._beyond(rows, local, self.reference[rows] * shares))
+        return tuple(cells), slopes.by_omega
 
     def _moving(
         self, block: FrictionBlock, unknowns: np.ndarray, deviation: np.ndarray, states: np.ndarray
@@ -162,17 +140,3 @@ class ReceptanceBalance:
         for block in self.lowered.blocks:
             np.add.at(result, block.rows, penalties(block))
         return result
-
-    @cached_property
-    def _sums(self) -> list[ContactSums]:
-        every = slice(None)
-        return [self._sums_of(block, every) for block in self.lowered.blocks]
-
-    def _sums_of(self, block: FrictionBlock, cells: np.ndarray | slice) -> ContactSums:
-        # The way of the sums is that of the whole block, so that some contacts alone are summed as among all.
-        numbers, shape = law_numbers(block), Shape(block.tangents, block.normal, block.memory)
-        return sums_for(numbers, shape, self.events)(numbers[cells], shape, self.series)
-
-    @cached_property
-    def _law_sums(self) -> list[LawSums]:
-        return [block.sums(self.series, self.events) for block in self.lowered.laws]

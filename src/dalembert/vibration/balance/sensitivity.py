@@ -82,7 +82,7 @@ def _by_receptances(
     for system in perturbed:
         push = series.phasors(_step(system.loads(series))) - _unbalanced(system, point.frequencies, motion)
         elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
-        acting, _ = replace(balance, lowered=elements).forces(point.omega, solution.unknowns)
+        acting, _ = replace(balance.elements, lowered=elements).forces(point.omega, solution.unknowns)
         pushes.append(series.coefficients(push))
         forces.append(_step(acting))
         residuals.append(point.respond(forces[-1]) - rows @ point.answer(pushes[-1]))

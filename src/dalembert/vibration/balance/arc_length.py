@@ -150,7 +150,10 @@ class PathTangent:
         solution = equations.solve(guess, omega, self.known.samples, plane)
         if not solution.converged:
             return solution, None
-        return solution, direction_at(solution, self.direction, self.width, self.size)
+        try:
+            return solution, direction_at(solution, self.direction, self.width, self.size)
+        except np.linalg.LinAlgError:  # a shorter step may end beside the singular point
+            return solution, None
 
     def turned(self, equations: PathProblem, failed: Solution, length: float) -> "PathTangent | None":
         """Return the path behind a sharp turn, from the tangent where a step over it failed.

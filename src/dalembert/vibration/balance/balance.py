@@ -36,13 +36,15 @@ case for it: a point of 480 unknowns took 28 ms densely and 31 by the structure,
 class Evaluation:
     """Residual, forces and states of contacts at a point. ``residual`` (q, coefficients); ``forces``
     (rows, coefficients): of all elements, by the rows that they see; ``states`` (cells, samples): by friction block;
-    ``size``: norm of the terms that are in balance, of which residuals are parts.
+    ``size``: what residuals are parts of; ``terms``: norm of terms that cancel in the residual, where it is larger than
+    that of the structure's stiffness times the unknowns.
     """
 
     residual: np.ndarray
     forces: np.ndarray
     states: tuple[np.ndarray, ...]
     size: float
+    terms: float = 0.0
 
     @property
     def scale(self) -> float:

@@ -143,6 +143,10 @@ class BlockTangent:
             columns.append(self._unsupported_product(values).ravel())
         return self.held.unresisted(np.stack(columns, axis=1), self._largest)
 
+    def unbalanced(self, residual: np.ndarray) -> np.ndarray:
+        """Mean forces along :attr:`unresisted` at a residual, N, (motions,)."""
+        return self.unresisted.T @ residual[:, 0]
+
     @property
     def _largest(self) -> float:
         return max(self.point.stiffest, float(self.reference.max()))

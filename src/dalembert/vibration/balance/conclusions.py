@@ -35,11 +35,10 @@ def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
 
 
 def _cause(problem: Equations, solution: Solution) -> Finding | None:
-    residual, motions = solution.evaluation.residual, solution.tangent.unresisted
     # The part of the residual along motions that nothing resists: a mean force that no position balances.
-    along = motions.T @ residual[:, 0]
+    motions, along = solution.tangent.unresisted, solution.tangent.unbalanced(solution.evaluation.residual)
     force = float(np.linalg.norm(along))
-    if force > max(LEFT * float(np.linalg.norm(residual)), VERIFIED * solution.point.load):
+    if force > max(LEFT * solution.left, VERIFIED * solution.acting):
         balance = problem.balance(solution.samples)
         moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
         rows = np.flatnonzero(moved > MOVING * moved.max())[:NAMED]
@@ -89,7 +88,7 @@ def unconverged_findings(points: int, lost: Iterable[Unconverged]) -> tuple[Find
         return (replace(cause, values=values, message=f"{count} At {frequency:.6g} Hz {cause.message}"),)
     worst = max(lost, key=lambda entry: entry.residual)
     values = {"points": len(lost), "frequency": worst.frequency, "residual": worst.residual}
-    message = f"{count} The largest residual is {worst.residual:.1e} of the forces, at {worst.frequency:.6g} Hz."
+    message = f"{count} The largest relative residual is {worst.residual:.1e}, at {worst.frequency:.6g} Hz."
     advice = "Follow the curve by arc length, or with smaller steps of frequency, more harmonics or more samples."
     return (Finding("points-not-found", "warning", values, message, advice),)
 

@@ -17,10 +17,11 @@ from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point,
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import Condensation, norm
+from dalembert.vibration.interface.condensation import DENSE, Condensation, norm
 from dalembert.vibration.interface.contacts_stuck import ContactsStuck, KnownStructures
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.interface.receptances import ReceptancePoint
+from dalembert.vibration.interface.stuck_structure import couples
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.system.system import StaticForce, VibrationSystem
@@ -272,7 +273,7 @@ def equations(
 
 
 LARGE = 500
-"""Unknowns above which a system of elastic contacts is solved by receptances."""
+"""Unknowns of elastic contacts above which a system is solved by receptances."""
 
 
 def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) -> str:
@@ -290,8 +291,11 @@ def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) ->
     if method.solver != AUTO:
         return method.solver
     orders = method.first().orders
-    unknowns = len(lowered.row_names) * (2 * len(orders) - (orders[0] == 0))
-    if rigid or stability or not lowered.blocks or unknowns <= LARGE:
+    rows = sum(len(np.unique(block.rows)) for block in lowered.blocks)
+    if rigid or stability or rows * (2 * len(orders) - (orders[0] == 0)) <= LARGE:
+        return STIFFNESS
+    # All modes of a small structure make receptances exact, at the cost of a matrix of them where damping couples them.
+    if lowered.structure.size <= DENSE and couples(lowered.structure):
         return STIFFNESS
     try:
         ContactsStuck(lowered.real).reference  # noqa: B018

@@ -40,7 +40,8 @@ class HarmonicBalance(Checked):
     sampling : float
         Largest change, as part of the forces, for which samples are enough.
     tolerance : float
-        Residual of a converged point, as part of the forces. Where rounding is larger, a residual of that size
+        Residual of a converged point, as part of the forces; by receptances, where residuals are displacements, as
+        part of the motion of the contacts. Where rounding is larger, a residual of that size
         converges too, up to 1e-8.
     iterations : int
         Newton iterations of a point, at most. The step to a point that is not converged is halved.
@@ -59,8 +60,9 @@ class HarmonicBalance(Checked):
     solver : {"auto", "stiffness", "receptance"}
         How the structure is written at the coordinates of contacts and springs. ``"stiffness"``: a dynamic stiffness,
         for each frequency. ``"receptance"``: the compliance and the modes of the structure whose contacts stick,
-        computed once: for interfaces of many elastic contacts, without stability. ``"auto"``: receptances where
-        :func:`frequency_response` has more than 500 unknowns.
+        computed once: for interfaces of many elastic contacts, without stability. ``"auto"``: receptances where the
+        contacts of a curve or a model have more than 500 unknowns, and the structure has more than 1500 degrees of
+        freedom or a damping that couples no modes.
 
     Raises
     ------

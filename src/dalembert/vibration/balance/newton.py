@@ -71,6 +71,21 @@ class Solution:
     distance: float = 0.0
 
     @property
+    def left(self) -> float:
+        """Norm of the residual, N."""
+        return norm(self.evaluation.residual) * self._newtons
+
+    @property
+    def acting(self) -> float:
+        """Norm of the loads, N."""
+        return self.point.load * self._newtons
+
+    @property
+    def _newtons(self) -> float:
+        """Forces by residuals: by receptances these are displacements, of rows as stiff as contacts."""
+        return 1.0 if isinstance(self.point, CondensedStructure) else float(self.point.stuck.reference.max(initial=0.0))
+
+    @property
     def condensed(self) -> CondensedStructure:
         """The condensed structure of a solution by dynamic stiffnesses."""
         if isinstance(self.point, CondensedStructure):
@@ -125,7 +140,7 @@ def correct(
         error = math.hypot(norm(evaluation.residual) / scale, distance)
         # Terms as large as Z U cancel in R, so that a residual of some 100 eps of them is rounding. `VERIFIED` limits
         # the excuse: with a stiff penalty rounding would otherwise pass motions that are not in balance.
-        rounding = min(ROUNDING * point.stiffest * norm(unknowns) / scale, VERIFIED)
+        rounding = min(ROUNDING * max(point.stiffest * norm(unknowns), evaluation.terms) / scale, VERIFIED)
         converged = error <= max(method.tolerance, rounding)
         return Solution(
             omega, unknowns, point, evaluation, tangent, scale, len(errors), error, converged, balance.series.samples,

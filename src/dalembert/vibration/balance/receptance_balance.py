@@ -91,7 +91,9 @@ class ReceptanceBalance:
         deviation = forces - self.reference[:, None] * unknowns
         moved = point.respond(deviation)
         residual = unknowns - point.linear + moved
-        return Evaluation(residual, forces, states, point.load + norm(moved)), deviation
+        # Parts of the motion, and not of that by the loads: near a resonance of the stuck structure this is far larger.
+        size, terms = norm(unknowns) + norm(residual), point.load + norm(moved)
+        return Evaluation(residual, forces, states, size, terms), deviation
 
     def _active(
         self, omega: float, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...]
@@ -123,8 +125,10 @@ class ReceptanceBalance:
         if block.normal:
             beyond[:, -1, : self.series.mean] = 0.0
         expected = np.where(reference[:, -1] > 0, STUCK, SEPARATED)
-        varies = beyond.max(axis=(1, 2)) > ACTIVE * penalties(block).max(axis=1) * size
-        return varies | np.any(states != expected[:, None], axis=1)
+        varies = beyond.max(axis=(1, 2)) > ACTIVE * self._penalties[rows].max(axis=1) * size
+        moving = varies | np.any(states != expected[:, None], axis=1)
+        # Cells of a contact share its rows: all of them are active, or none.
+        return np.isin(block.contacts, block.contacts[moving])
 
     def _beyond(self, rows: np.ndarray, local: np.ndarray, reference: np.ndarray) -> ActiveCells:
         """Cells with their Jacobians (cells, columns · coefficients, ...), less their references (cells, columns)."""

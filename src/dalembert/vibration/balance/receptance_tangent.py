@@ -8,12 +8,13 @@ element and one product with the compliance for all harmonics. Its preconditione
 each element alone, with its own compliance.
 """
 
+import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.vibration.balance.block_tangent import EXACT
@@ -24,6 +25,14 @@ DIRECT = 120
 """Active unknowns up to which a dense system costs less than iterations."""
 SINGLE = 1e-5
 """Tolerance from which on a compliance in single precision is enough."""
+SIGNED = 4000
+"""Active unknowns up to which a dense matrix is made where it is needed: for a sign, or where iterations fail."""
+NEAR = 1e-7
+"""Residual of a linear system, as part of its right-hand side, that rounding may leave."""
+RESISTED = 1e-10
+"""Forces of the elements under a mean motion, as part of those where all stick, up to which nothing resists it."""
+LOOSE = 1e-12
+"""Square of the same, above which a motion is certainly resisted."""
 KRYLOV, CYCLES = 200, 3
 """Iterations of GMRES in a cycle, and cycles."""
 
@@ -55,17 +64,48 @@ class ReceptanceTangent:
     #: Residual of the linear system of a Newton step, as part of its right-hand side.
     forcing = 1e-3
 
-    @property
+    @cached_property
     def unresisted(self) -> np.ndarray:
-        """Mean motions that nothing resists: the reference leaves none."""
-        return np.zeros((len(self.slope), 0))
+        """Mean motions (rows, motions), orthonormal, that neither the structure nor an element resists.
+
+        Where all contacts of a part slip, their mean forces do not depend on its mean position.
+        """
+        free, reference = self.point.stuck.free, self.point.stuck.reference
+        if not free.shape[1] or not self.point.series.mean:
+            return np.zeros((len(self.slope), 0))
+        # Forces of all elements under a mean motion φ, (r + m) φ: where these vanish, J φ = φ - G r φ = 0.
+        forces = np.zeros((*self.slope.shape, free.shape[1]))
+        forces[:, 0] = reference[:, None] * free
+        largest = np.linalg.norm(forces)
+        for number, motion in enumerate(free.T):
+            values = np.zeros((len(self._rows), self.slope.shape[1]))
+            values[:, 0] = motion[self._rows]
+            forces[self._rows, :, number] += self._times(values, supported=False)
+        forces = forces.reshape(-1, free.shape[1])
+        # Squares of the singular values first: they need no more than a small matrix.
+        if np.linalg.eigvalsh(forces.T @ forces)[0] > LOOSE * largest**2:
+            return np.zeros((len(self.slope), 0))
+        _, sizes, shapes = np.linalg.svd(forces, full_matrices=False)
+        return free @ shapes[sizes <= RESISTED * largest].T
+
+    def unbalanced(self, residual: np.ndarray) -> np.ndarray:
+        """Mean forces along :attr:`unresisted` at a residual, N, (motions,)."""
+        # K_r φ = Bᵀ r B φ for a motion that the structure does not resist; its largest displacement is 1.
+        motions = self.unresisted / np.abs(self.unresisted).max(axis=0, initial=1e-300)
+        return (self.point.stuck.reference[:, None] * motions).T @ residual[:, 0]
+
+    @cached_property
+    def _support(self) -> np.ndarray | None:
+        """Mean motions of the active rows that are held by their references, (active, motions); None without any."""
+        motions = self.unresisted[self._rows]
+        return motions if motions.size else None
 
     @property
     def sign(self) -> float:
         """Sign of the determinant, as far as a dense matrix gives it; else 0."""
         if not len(self._rows):
             return 1.0
-        if not self._is_small:
+        if len(self._rows) * self.slope.shape[1] > SIGNED:
             return 0.0
         matrix, pivots = self._factors
         swapped = np.sum(pivots != np.arange(len(pivots))) % 2
@@ -105,9 +145,12 @@ class ReceptanceTangent:
     def _is_small(self) -> bool:
         return len(self._rows) * self.slope.shape[1] <= DIRECT
 
-    def _times(self, values: np.ndarray) -> np.ndarray:
-        """m times values of the active rows (active, coefficients)."""
+    def _times(self, values: np.ndarray, supported: bool = True) -> np.ndarray:
+        """m times values of the active rows (active, coefficients), with the support of what nothing resists."""
         result = np.zeros_like(values)
+        if supported and self._support is not None:
+            # φ k φᵀ of the mean, k as stiff as the contacts. It does not act where the forces are in balance.
+            result[:, 0] = self._support @ (self._stiffness * (self._support.T @ values[:, 0]))
         for places, cells in zip(self._places, self.cells, strict=True):
             count, size, _ = cells.blocks.shape
             product = (cells.blocks @ values[places].reshape(count, size, 1)).reshape(*places.shape, -1)
@@ -117,10 +160,18 @@ class ReceptanceTangent:
                 result[places] += product
         return result
 
+    @cached_property
+    def _stiffness(self) -> float:
+        """Stiffness of the support, N/m: the largest one of a row."""
+        return float(self.point.stuck.reference.max())
+
     def _solve_active(self, right: np.ndarray, tolerance: float) -> np.ndarray:
         if self._is_small:
-            return lu_solve(self._factors, right.ravel(), check_finite=False).reshape(right.shape)
+            return self._direct(right)
         return self._iterated(right, tolerance)
+
+    def _direct(self, right: np.ndarray) -> np.ndarray:
+        return lu_solve(self._factors, right.ravel(), check_finite=False).reshape(right.shape)
 
     @cached_property
     def _factors(self) -> Any:
@@ -136,7 +187,16 @@ class ReceptanceTangent:
             for place, block in zip(places, cells.blocks, strict=True):
                 columns = response[:, place].reshape(count, -1) @ block
                 matrix.reshape(count, len(self._rows), size)[:, place] += columns.reshape(count, len(place), size)
-        return lu_factor(matrix, check_finite=False, overwrite_a=True)
+        if self._support is not None:
+            support = self._stiffness * self._support @ self._support.T
+            of = matrix.reshape(count, len(self._rows), size)
+            of[:, :, 0] += response[:, :, 0] @ support
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinAlgWarning)
+            factors = lu_factor(matrix, check_finite=False, overwrite_a=True)
+        if not np.all(np.abs(np.diag(factors[0])) > 0):
+            raise np.linalg.LinAlgError("the Jacobian is singular")
+        return factors
 
     def _iterated(self, right: np.ndarray, tolerance: float) -> np.ndarray:
         shape, size = right.shape, right.size
@@ -153,7 +213,9 @@ class ReceptanceTangent:
         # Preconditioned from the right: the residual that GMRES judges is that of the system.
         operator = LinearOperator((size, size), matvec=product, dtype=float)  # type: ignore[call-arg]
         solution, failed = gmres(operator, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES)
-        if failed:
+        if failed and size <= SIGNED:
+            return self._direct(right)
+        if failed and np.linalg.norm(operator @ solution - right.ravel()) > NEAR * np.linalg.norm(right):
             raise np.linalg.LinAlgError("GMRES does not converge")
         return self._preconditioned(solution.reshape(shape))
 
@@ -188,5 +250,9 @@ class ReceptanceTangent:
             own = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
             product = (own @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
             product[:, np.arange(columns * size), np.arange(columns * size)] += 1.0
-            result.append((places[order], np.linalg.inv(product)))
+            try:
+                inverses = np.linalg.inv(product)
+            except np.linalg.LinAlgError:  # an element that alone holds a part, and slips
+                inverses = np.broadcast_to(np.eye(columns * size), product.shape)
+            result.append((places[order], inverses))
         return result

@@ -55,6 +55,10 @@ class DenseTangent:
         forces = self.jacobian[:, :, :, 0].reshape(self.slope.size, -1) @ self.held.motions
         return self.held.unresisted(forces, self._largest)
 
+    def unbalanced(self, residual: np.ndarray) -> np.ndarray:
+        """Mean forces along :attr:`unresisted` at a residual, N, (motions,)."""
+        return self.unresisted.T @ residual[:, 0]
+
     @property
     def _largest(self) -> float:
         return float(np.abs(self.jacobian).max())
@@ -103,6 +107,8 @@ def orientation(tangent: Tangent, direction: np.ndarray, scales: tuple[float, fl
     if isinstance(tangent, DenseTangent):
         return float(np.linalg.slogdet(_with_row(tangent, direction, scales))[0])
     size, width, _ = scales
+    if not tangent.sign:
+        return 0.0
     # det of the bordered matrix = det J (t_ω - t · J⁻¹ ∂R/∂ω), by its Schur complement; only signs are kept.
     moving = tangent.solve(tangent.slope[:, :, None])[:, :, 0] * (width / size)
     return tangent.sign * float(np.sign(direction[-1] - direction[:-1] @ moving.ravel()))

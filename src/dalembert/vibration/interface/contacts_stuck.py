@@ -40,6 +40,7 @@ class ContactsStuck:
     lowered: Lowered
     highest: float = 0.0
     known: KnownStructures = field(default_factory=KnownStructures, repr=False)
+    _structure: StuckStructure | None = field(default=None, repr=False)
     _of_series: dict[tuple[int, ...], Receptances] = field(default_factory=dict, repr=False)
 
     @cached_property
@@ -61,16 +62,16 @@ class ContactsStuck:
     def receptances(self, series: Fourier, loads: np.ndarray, omega: float) -> Receptances:
         """Receptances at ω, and near it, with the harmonics of a series. ``loads`` (orders, n): their phasors."""
         highest, lowered, known = max(series.orders) * max(omega, self.highest), self.lowered, self.known
-        if known.key != self._key:
-            known.key, known.structure = self._key, None
-            self._of_series.clear()
-        if known.structure is None or not known.structure.is_fast_enough(highest):
-            known.structure = stuck_structure(
-                lowered.structure, lowered.matrix, self.reference, MARGIN * highest, known.structure
+        if self._structure is None and known.key == self._key:
+            self._structure = known.structure
+        if self._structure is None or not self._structure.is_fast_enough(highest):
+            self._structure = stuck_structure(
+                lowered.structure, lowered.matrix, self.reference, MARGIN * highest, self._structure
             )
             self._of_series.clear()
+            known.key, known.structure = self._key, self._structure
         if series.orders not in self._of_series:
-            self._of_series[series.orders] = Receptances(known.structure, series, loads)
+            self._of_series[series.orders] = Receptances(self._structure, series, loads)
         return self._of_series[series.orders]
 
     @cached_property
@@ -102,7 +103,7 @@ class ContactsStuck:
         for entry in lowered.forces:
             if isinstance(entry, StaticForce):
                 force[lowered.structure.dofs.index(entry.dof)] += np.real(entry.value)
-        for _ in range(ROUNDS if any(block.normal for block in lowered.blocks) else 0):
+        for _ in range(ROUNDS):
             pushed = np.zeros(len(reference))
             for block in lowered.blocks:
                 if block.normal:
@@ -116,9 +117,11 @@ class ContactsStuck:
             moved = lowered.matrix @ solve(force + lowered.matrix.T @ pushed)
             better = self._stiffnesses([_closed(block, moved) for block in lowered.blocks])
             if np.array_equal(better, reference):
-                break
+                return reference
             reference = better
-        return reference
+        # The search goes round in a circle: with all contacts closed, the equations are correct too.
+        held(lowered.structure, lowered.matrix, closed)
+        return closed
 
     def _stiffnesses(self, closed: list[np.ndarray]) -> np.ndarray:
         """Stiffnesses of the rows (rows,) where some contacts of each block are closed."""

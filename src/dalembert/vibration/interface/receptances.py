@@ -16,8 +16,10 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.errors import SolveError
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.condensation import NEARLY, norm
+from dalembert.vibration.interface.free_motions import FLOATING
 from dalembert.vibration.interface.stuck_structure import StuckStructure
 
 FULL = 0.5
@@ -30,7 +32,7 @@ class ReceptancePoint:
     (orders, modes) or (orders, modes, modes): the bracket of the formula and its derivative by ω; ``linear``,
     ``linear_slope`` (rows, coefficients): displacements of the rows under the loads while all contacts stick, m, and
     their derivative by what the path follows; ``forced`` (orders, n): phasors of the loads; ``rate``: derivative of ω
-    by what the path follows: 1 or 0.
+    by what the path follows: 1 or 0; ``resonates``: whether a mode has no dynamic stiffness where it is driven.
     """
 
     stuck: StuckStructure
@@ -43,6 +45,7 @@ class ReceptancePoint:
     linear_slope: np.ndarray
     forced: np.ndarray
     rate: float = 1.0
+    resonates: bool = False
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
 
     #: The equations are of displacements: no stiffness scales them.
@@ -54,11 +57,6 @@ class ReceptancePoint:
     def load(self) -> float:
         """Norm of the displacements by the loads."""
         return norm(self.linear)
-
-    @property
-    def resonates(self) -> bool:
-        """Whether a mode has no dynamic stiffness at a harmonic that forces act in."""
-        return not np.all(np.isfinite(self.linear))
 
     def respond(self, forces: np.ndarray, rows: np.ndarray | None = None, single: bool = False) -> np.ndarray:
         """G times forces on all rows (rows, coefficients), or on some. ``single``: compliance in single precision."""
@@ -156,8 +154,9 @@ class Receptances:
     def at(self, omega: float) -> ReceptancePoint:
         """The receptances at ω, rad/s."""
         s = np.array(self.series.orders, dtype=float) * omega
-        gains, slopes = self._gains(s)
+        gains, slopes, still = self._gains(s)
         static, modal = self._loaded
+        driven = np.abs(modal) > FLOATING * np.abs(modal).max(initial=0.0)
         shapes = self.stuck.row_shapes
 
         def moved(gain: np.ndarray) -> np.ndarray:
@@ -166,7 +165,7 @@ class Receptances:
 
         return ReceptancePoint(
             self.stuck, self.series, omega, s, gains, slopes, static + moved(gains), moved(slopes), self.loads,
-            kept=self._kept,
+            resonates=bool(np.any(still & driven)), kept=self._kept,
         )  # fmt: skip
 
     @cached_property
@@ -181,8 +180,8 @@ class Receptances:
         static[:, pushed] = self.stuck.rows @ self.stuck.solve(loads[:, pushed])
         return static, self.loads @ self.stuck.shapes
 
-    def _gains(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """1/q - 1 with q = 1 - s²μ + i s c + i sign(s) d, and its derivative by ω."""
+    def _gains(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """1/q - 1 with q = 1 - s²μ + i s c + i sign(s) d, its derivative by ω, and whether a mode has q = 0."""
         stuck, orders = self.stuck, np.array(self.series.orders, dtype=float)
         full = stuck.damping.ndim == 2 or stuck.loss.ndim == 2
         inertias, damping, loss = (
@@ -193,6 +192,12 @@ class Receptances:
         beyond = -(s**2) * inertias + 1j * s * damping + 1j * np.sign(s) * loss
         slope = orders * (-2 * s * inertias + 1j * damping)
         if not full:
-            return -beyond / (1 + beyond), -slope / (1 + beyond) ** 2
-        inverse = np.linalg.inv(np.eye(beyond.shape[1]) + beyond)
-        return -inverse @ beyond, -inverse @ slope @ inverse
+            # An undamped mode at its frequency, with half of the digits of both terms: contacts that slip detune it.
+            still = np.abs(1 + beyond) < NEARLY
+            stiffness = np.where(still, NEARLY, 1 + beyond)
+            return -beyond / stiffness, -slope / stiffness**2, still
+        try:
+            inverse = np.linalg.inv(np.eye(beyond.shape[1]) + beyond)
+        except np.linalg.LinAlgError:
+            raise SolveError("the structure whose contacts stick resonates without damping; give it damping") from None
+        return -inverse @ beyond, -inverse @ slope @ inverse, np.zeros(beyond.shape[:2], dtype=bool)

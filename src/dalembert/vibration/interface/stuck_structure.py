@@ -7,7 +7,7 @@ that degrees of freedom without mass are modes with μ = 0.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,14 +18,17 @@ from dalembert.errors import SolveError
 from dalembert.structure import Structure
 from dalembert.structure.eigenmodes import dense, lanczos, real_part
 from dalembert.structure.factorise import factorise
-from dalembert.vibration.interface.condensation import DENSE, coupled
+from dalembert.vibration.interface.condensation import COUPLED, DENSE, coupled
+from dalembert.vibration.interface.free_motions import FLOATING, free_motions
 
-FEWEST, MOST = 40, 320
-"""Modes of a sparse structure."""
+FEWEST, MOST = 40, 1280
+"""Modes of a structure that is not small."""
+COUPLED_MODES = 300
+"""Modes that a damping may couple: a matrix of them is inverted for each harmonic."""
 STATIC = 1 / 400
-"""(s/ω)² of the first mode that is left out: it follows its forces as in statics, with an error of this part."""
+"""(s/ω)² of the first mode that is left out where modes are computed. It follows its forces as in statics."""
 ENOUGH = 4 * STATIC
-"""The same where modes are computed anew, for twice the frequency at once."""
+"""The largest such part, above which more modes are computed."""
 CHUNK = 256
 """Columns of the compliance that are solved for at a time."""
 WHAT = "the stiffness of the structure whose contacts stick"
@@ -38,76 +41,111 @@ Solve = Callable[[np.ndarray], np.ndarray]
 class StuckStructure:
     """A structure with the reference stiffnesses of its elements' rows.
 
-    ``rows`` (rows, n): B; ``reference`` (rows,): r, N/m; ``solve``: K_r⁻¹ times columns (n, -); ``compliance``
-    (rows, rows): B K_r⁻¹ Bᵀ; ``shapes`` (n, modes): V; ``inertias`` (modes,): μ, s²; ``damping``, ``loss``: Vᵀ C V and
-    Vᵀ D V, as diagonals (modes,) where they couple no modes, else (modes, modes).
+    ``rows`` (rows, n): B; ``reference`` (rows,): r, N/m; ``solve``: K_r⁻¹ times columns (n, -); ``shapes`` (n, modes):
+    V; ``inertias`` (modes,): μ, s²; ``damping``, ``loss``: Vᵀ C V and Vᵀ D V, as diagonals (modes,) where they couple no
+    modes, else (modes, modes); ``free`` (rows, motions): the rows in motions that the structure alone does not resist.
     """
 
     rows: Any
     reference: np.ndarray
     solve: Solve = field(repr=False)
-    compliance: np.ndarray
     shapes: np.ndarray
     inertias: np.ndarray
     damping: np.ndarray
     loss: np.ndarray
-    _recoveries: dict[bytes, np.ndarray] = field(default_factory=dict, repr=False)
+    free: np.ndarray
+    _kept: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
+
+    @property
+    def compliance(self) -> np.ndarray:
+        """B K_r⁻¹ Bᵀ, (rows, rows)."""
+        if "compliance" not in self._kept:
+            self._kept["compliance"] = _compliance(self.rows, self.solve)
+        return self._kept["compliance"]
 
     @cached_property
     def row_shapes(self) -> np.ndarray:
         """B V, (rows, modes)."""
         return np.ascontiguousarray(self.rows @ self.shapes)
 
-    @cached_property
+    @property
     def single(self) -> np.ndarray:
         """The compliance in single precision, with half of the memory to read."""
-        return self.compliance.astype(np.float32)
+        if "single" not in self._kept:
+            self._kept["single"] = self.compliance.astype(np.float32)
+        return self._kept["single"]
 
     def is_fast_enough(self, highest: float) -> bool:
         """Whether the modes reach far enough above an angular frequency, rad/s."""
-        every = len(self.inertias) in (self.rows.shape[1], MOST)
-        return every or highest**2 * self.inertias.min() <= ENOUGH
+        return len(self.inertias) == self.rows.shape[1] or highest**2 * self.inertias.min() <= ENOUGH
 
     def recovery(self, dofs: np.ndarray) -> np.ndarray:
         """Static displacements of degrees of freedom (dofs,) under unit forces on the rows, (dofs, rows)."""
-        key = dofs.tobytes()
-        if key not in self._recoveries:
+        key = f"recovery {dofs.tobytes()!r}"
+        if key not in self._kept:
             units = np.zeros((self.rows.shape[1], len(dofs)))
             units[dofs, np.arange(len(dofs))] = 1.0
-            self._recoveries[key] = np.asarray(self.rows @ self.solve(units)).T
-        return self._recoveries[key]
+            self._kept[key] = np.asarray(self.rows @ self.solve(units)).T
+        return self._kept[key]
 
 
 def stuck_structure(
     structure: Structure, rows: csc_array, reference: np.ndarray, highest: float, before: StuckStructure | None = None
 ) -> StuckStructure:
     """Return a structure with reference stiffnesses (rows,). ``highest``: largest angular frequency of its motions,
-    rad/s; ``before``: the same with fewer modes, if it is known. SolveError if a part moves without being held.
+    rad/s; ``before``: the same with fewer modes, if it is known. SolveError if a part moves without being held, or if
+    the highest frequency lies among too many modes.
     """
     stiffness, mass = _stiffened(structure, rows, reference), real_part(structure.mass)
-    # All modes of a small structure: the receptance is then exact at every frequency, and damping may be any.
+    solve = held(structure, rows, reference) if before is None else before.solve
+    # All modes of a small structure: the receptance is then exact at every frequency.
     if structure.size <= DENSE:
         inertias, shapes = _all_modes(mass, stiffness)
-        solve: Solve = partial(_by_modes, shapes)
     else:
-        solve = held(structure, rows, reference) if before is None else before.solve
         inertias, shapes = _slow_modes(csc_array(mass), csc_array(stiffness), solve, highest)
-    damping, loss = (
-        np.zeros(len(inertias)) if matrix is None else _among(shapes, real_part(matrix))
+    damping, loss = _damping(structure, shapes)
+    if max(damping.ndim, loss.ndim) == 2 and len(inertias) > COUPLED_MODES:
+        # A full matrix of all modes for each harmonic costs too much: the slow ones, as of a large structure.
+        count = max(COUPLED_MODES, int(np.sum(highest**2 * inertias > STATIC)))
+        inertias, shapes = inertias[:count], np.ascontiguousarray(shapes[:, :count])
+        damping, loss = _damping(structure, shapes)
+    free = _free_rows(structure, rows) if before is None else before.free
+    # What is static does not depend on the modes.
+    kept = {} if before is None else before._kept
+    return StuckStructure(rows, reference, solve, shapes, inertias, damping, loss, free, kept)
+
+
+def _free_rows(structure: Structure, rows: Any) -> np.ndarray:
+    """Return the rows in motions that the structure does not resist, orthonormal; without those that move none."""
+    moved = np.asarray(rows @ free_motions(real_part(structure.stiffness)))
+    shapes, sizes, _ = np.linalg.svd(moved, full_matrices=False)
+    return shapes[:, sizes > FLOATING * sizes.max(initial=0.0)]
+
+
+def couples(structure: Structure) -> bool:
+    """Whether the damping of a structure couples its modes, whatever the stiffnesses of its contacts."""
+    damping, mass = structure.damping, real_part(structure.mass)
+    if structure.loss is not None and abs(real_part(structure.loss)).max() > 0:
+        return True
+    if damping is None or not abs(damping).max():
+        return False
+    # Damping in proportion to the mass alone, C = αM, does not.
+    damping = real_part(damping)
+    factor = damping.diagonal().sum() / mass.diagonal().sum()
+    return bool(abs(damping - factor * mass).max() > COUPLED * abs(damping).max())
+
+
+def _damping(structure: Structure, shapes: np.ndarray) -> list[np.ndarray]:
+    """Return Vᵀ C V and Vᵀ D V."""
+    return [
+        np.zeros(shapes.shape[1]) if matrix is None else _among(shapes, real_part(matrix))
         for matrix in (structure.damping, structure.loss)
-    )
-    compliance = _compliance(rows, solve) if before is None else before.compliance
-    return StuckStructure(rows, reference, solve, compliance, shapes, inertias, damping, loss)
-
-
-def _by_modes(shapes: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    # With all modes, V Vᵀ = K_r⁻¹.
-    return shapes @ (shapes.T @ columns)
+    ]
 
 
 def held(structure: Structure, rows: csc_array, reference: np.ndarray) -> Solve:
-    """Return K_r⁻¹ as a function of columns. SolveError if a part of the structure moves without being held."""
-    return factorise(_stiffened(structure, rows, reference), WHAT)
+    """Return K_r⁻¹ as a function of columns. SolveError if a part moves without being held, or K_r is not positive."""
+    return factorise(_stiffened(structure, rows, reference), WHAT, positive=True)
 
 
 def _compliance(rows: Any, solve: Solve) -> np.ndarray:
@@ -134,7 +172,7 @@ def _all_modes(mass: Any, stiffness: Any) -> tuple[np.ndarray, np.ndarray]:
     try:
         inertias, shapes = eigh(dense(mass), dense(stiffness))
     except np.linalg.LinAlgError:
-        raise SolveError(f"{WHAT} is singular: a part of the structure moves without being held; clamp it") from None
+        raise SolveError(f"{WHAT} is not positive definite. Clamp what moves, or use solver='stiffness'") from None
     return np.clip(inertias[::-1], 0.0, None), np.ascontiguousarray(shapes[:, ::-1])
 
 
@@ -142,11 +180,18 @@ def _slow_modes(mass: Any, stiffness: Any, solve: Any, highest: float) -> tuple[
     """Return the slowest modes, as many as the highest frequency needs."""
     count = FEWEST
     while True:
-        squares, shapes = lanczos(mass, stiffness, count, solve)
-        if highest**2 <= STATIC * squares.max() or count >= MOST:
-            order = np.argsort(squares)
+        squares, shapes = lanczos(mass, stiffness, min(count, mass.shape[0] - 1), solve)
+        # Degrees of freedom without mass have no frequency.
+        order = [place for place in np.argsort(squares) if 0 < squares[place] < np.inf]
+        fastest = squares[order[-1]]
+        if highest**2 <= STATIC * fastest or len(order) < len(squares):
             # From φᵀ M φ = 1 to Vᵀ K_r V = 1: V = φ/ω, μ = 1/ω².
             return 1 / squares[order], np.ascontiguousarray(shapes[:, order] / np.sqrt(squares[order]))
+        if count >= MOST:
+            raise SolveError(
+                f"the highest harmonic, {highest / (4 * np.pi):.4g} Hz, needs more than {MOST} modes of the structure; "
+                "use fewer harmonics, a coarser mesh, or solver='stiffness'"
+            )
         count *= 2
 
 

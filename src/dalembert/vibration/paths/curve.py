@@ -51,7 +51,7 @@ class FrequencyCurve(ConvergedResult):
         From which a curve can be restarted.
     iterations : array of int, shape (points,)
     residuals : array, shape (points,)
-        Norm of the residual divided by that of the forces.
+        Norm of the residual divided by that of the forces; by receptances, by that of the motion of the contacts.
     converged : array of bool, shape (points,)
     fold : array of bool, shape (points,)
         Where the path turns back in frequency.

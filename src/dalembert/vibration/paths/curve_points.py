@@ -37,11 +37,13 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
 
 def _in_unknowns_of(problem: Equations, curve: FrequencyCurve, unknowns: np.ndarray) -> np.ndarray:
     """Return the unknowns (q, coefficients) of a point of a curve as those of equations with another solver."""
-    coordinates, rows = problem.lowered.coordinates, len(problem.lowered.row_names)
     by_receptances = curve.provenance["method"].get("solver") == RECEPTANCE
-    if by_receptances and not problem.by_receptances and len(unknowns) == rows:
+    if by_receptances == problem.by_receptances:
+        return unknowns
+    coordinates, rows = problem.lowered.coordinates, len(problem.lowered.row_names)
+    if by_receptances and len(unknowns) == rows:
         return unknowns[coordinates.rows]
-    if problem.by_receptances and not by_receptances and len(unknowns) == len(coordinates.rows):
+    if problem.by_receptances and len(unknowns) == len(coordinates.rows):
         return coordinates.combination @ unknowns
     return unknowns
 

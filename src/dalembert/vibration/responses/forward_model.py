@@ -292,8 +292,8 @@ class FrequencyResponse:
             if not point.solution.converged:
                 raise SolveError(
                     f"at {point.solution.omega / (2 * np.pi):.6g} Hz the harmonics were not found: after "
-                    f"{point.solution.iterations} iterations {point.solution.error:.1e} of the forces are not "
-                    "balanced; give more frequencies on the way there, or fewer harmonics"
+                    f"{point.solution.iterations} iterations the relative residual is {point.solution.error:.1e}; give "
+                    "more frequencies on the way there, or fewer harmonics"
                 )
             yield point.solution
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dalembert.errors import InputError
+from dalembert.errors import InputError, SolveError
 from dalembert.structure import Dofs, Structure, lumped
 from dalembert.vibration import (
     BilinearStop,
@@ -250,7 +250,10 @@ def test_what_needs_dynamic_stiffnesses_is_refused_in_a_sentence(more: dict[str,
 
 def row_of_masses(count: int) -> VibrationSystem:
     names = [f"m{k}" for k in range(count)]
-    springs = [(names[k], names[k + 1], 1.0, 0.02) for k in range(count - 1)] + [(names[0], None, 1.0, 0.02)]
+    # Damping in proportion to the mass couples no modes.
+    springs = [(names[k], names[k + 1], 1.0, 0.0) for k in range(count - 1)] + [
+        (name, None, 0.1, 0.02) for name in names
+    ]
     posed = VibrationSystem(lumped(dict.fromkeys(names, 1.0), springs))
     posed.add(HarmonicForce(names[-1], 1.0))
     for name in names:
@@ -354,3 +357,79 @@ def test_large_forces_begin_without_contacts():
     bare.add(HarmonicForce("m1", 0.2))
     expected = frequency_response(bare, np.array([1.0]) / (2 * np.pi), HarmonicBalance(3), check=False).response[0]
     np.testing.assert_allclose(balance.without_contacts(point), expected[[0, 1]], rtol=0, atol=1e-7)
+
+
+def sliding_block(bias: float = 0.0) -> VibrationSystem:
+    """A mass on a driven one that only friction ties to it, and which slips all the time."""
+    posed = VibrationSystem(lumped({"base": 1.0, "block": 0.5}, [("base", None, 4.0, 0.1)]))
+    posed.add(HarmonicForce("base", 5.0))
+    if bias:
+        posed.add(StaticForce("block", bias))
+    for name in ("left", "right"):
+        posed.add(FrictionContact(name, "block", "base", friction=0.5, preload=0.2, law=ElasticSlider(20.0)))
+    return posed
+
+
+@pytest.mark.parametrize("direct", [0, 120])
+def test_the_mean_of_a_part_that_slips_all_the_time_is_supported(direct: int, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("dalembert.vibration.balance.receptance_tangent.DIRECT", direct)
+    frequencies = np.array([0.3, 0.32, 0.34])
+    curve, other = (
+        frequency_response(sliding_block(), frequencies, HarmonicBalance(7, solver=solver), check=False)
+        for solver in ("receptance", "stiffness")
+    )
+    assert curve.converged.all()
+    problem = equations(sliding_block(), HarmonicBalance(7, solver="receptance"))
+    tangent = problem.first(2 * np.pi * 0.3).tangent
+    assert tangent.unresisted.shape == (2, 1)
+    np.testing.assert_allclose(curve.amplitude("base"), other.amplitude("base"), rtol=1e-8)
+    np.testing.assert_allclose(curve.forces[:, :, 1:], other.forces[:, :, 1:], rtol=0, atol=1e-8)
+
+
+def test_a_mean_force_that_no_contact_balances_is_the_finding():
+    curve = frequency_response(
+        sliding_block(0.3), np.array([0.3]), HarmonicBalance(7, solver="receptance"), check=False
+    )
+    assert not curve.converged.any()
+    assert [finding.code for finding in curve.findings] == ["unbalanced-mean"]
+    assert "a mean force of 0.3 N along" in curve.findings[0].message
+
+
+def test_contacts_tie_a_structure_that_nothing_holds_by_dynamic_stiffnesses():
+    names = [f"m{k}" for k in range(140)]
+    springs = [(names[k], names[k + 1], 1.0, 0.0) for k in range(139)]
+    posed = VibrationSystem(lumped(dict.fromkeys(names, 1.0), springs))
+    posed.add(HarmonicForce(names[-1], 1.0))
+    for k in range(70):
+        posed.add(FrictionContact(f"on {k}", names[k], names[k + 1], friction=0.5, preload=0.1, law=ElasticSlider(0.4)))
+    curve = frequency_response(posed, np.array([0.05]), HarmonicBalance(4), check=False)
+    assert curve.provenance["method"]["solver"] == "stiffness"
+    with pytest.raises(SolveError, match="moves without being held"):
+        frequency_response(posed, np.array([0.05]), HarmonicBalance(4, solver="receptance"))
+
+
+def test_a_part_that_stops_alone_hold_has_their_stiffness():
+    posed = VibrationSystem(lumped({"m": 1.0, "free": 1.0}, [("m", None, 1.0, 0.05)]))
+    posed.add(HarmonicForce("m", 0.2))
+    posed.add(StaticForce("free", 0.3))
+    posed.add(FrictionContact("pad", "m", friction=0.5, preload=0.1, law=ElasticSlider(0.4)))
+    posed.add(Gap("floor", "free", "m", stiffness=8.0, gap=0.01))
+    curve, other = (
+        frequency_response(posed, np.array([0.1, 0.11]), replace(BY_RECEPTANCES, solver=solver), check=False)
+        for solver in ("receptance", "stiffness")
+    )
+    assert curve.converged.all()
+    np.testing.assert_allclose(curve.response, other.response, rtol=0, atol=1e-9)
+
+
+def test_an_undamped_mode_at_its_frequency_is_detuned_by_slip():
+    posed = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.0)]))
+    posed.add(HarmonicForce("m", 1.0))
+    posed.add(FrictionContact("pad", "m", friction=0.5, preload=1.0, law=ElasticSlider(3.0)))
+    at = np.array([2.0]) / (2 * np.pi)  # where the mass vibrates on both springs
+    curve, other = (
+        frequency_response(posed, at, replace(BY_RECEPTANCES, tolerance=1e-9, solver=solver), check=False)
+        for solver in ("receptance", "stiffness")
+    )
+    assert curve.converged.all()
+    np.testing.assert_allclose(curve.response, other.response, rtol=0, atol=1e-6)

@@ -15,8 +15,8 @@ from functools import cached_property
 import numpy as np
 
 from dalembert.vibration.balance.balance import Evaluation
-from dalembert.vibration.balance.elements import Elements
 from dalembert.vibration.balance.receptance_tangent import ActiveCells, ReceptanceTangent
+from dalembert.vibration.balance.row_elements import Elements
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import norm
 from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties

@@ -42,8 +42,8 @@ class StuckStructure:
     """A structure with the reference stiffnesses of its elements' rows.
 
     ``rows`` (rows, n): B; ``reference`` (rows,): r, N/m; ``solve``: K_r⁻¹ times columns (n, -); ``shapes`` (n, modes):
-    V; ``inertias`` (modes,): μ, s²; ``damping``, ``loss``: Vᵀ C V and Vᵀ D V, as diagonals (modes,) where they couple no
-    modes, else (modes, modes); ``free`` (rows, motions): the rows in motions that the structure alone does not resist.
+    V; ``inertias`` (modes,): μ, s²; ``damping``, ``loss``: Vᵀ C V and Vᵀ D V, as diagonals (modes,) where they couple
+    no modes, else (modes, modes); ``free`` (rows, motions): the rows in motions that the structure does not resist.
     """
 
     rows: Any

@@ -86,8 +86,7 @@ class Body(BaseBody):
         return self.marker(point).numbers
 
 
-#: Derivative of a vector by rotations about the axes: e_j x u = sum_k u_k TURNS[k, :, j].
-TURNS = np.cross(np.eye(3)[None, :, :], np.eye(3)[:, None, :]).transpose(0, 2, 1)
+TURNS = np.cross(np.eye(3)[None], np.eye(3)[:, None]).transpose(0, 2, 1)  # e_j x u = sum_k u_k TURNS[k, :, j]
 
 
 def pose_modes(coordinates: np.ndarray, frame: np.ndarray, vectors: int = 4) -> np.ndarray:

@@ -20,8 +20,8 @@ from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import DENSE, Condensation, norm
 from dalembert.vibration.interface.contacts_stuck import ContactsStuck, KnownStructures
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
+from dalembert.vibration.interface.modal_damping import couples
 from dalembert.vibration.interface.receptances import ReceptancePoint
-from dalembert.vibration.interface.stuck_structure import couples
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
 from dalembert.vibration.system.system import StaticForce, VibrationSystem

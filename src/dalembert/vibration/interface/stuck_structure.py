@@ -5,36 +5,24 @@ contacts alone hold are then ordinary ones. Modes have :math:`V^T K_r V = 1` and
 that degrees of freedom without mass are modes with μ = 0.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array, diags_array, issparse
 
-from dalembert.errors import SolveError
 from dalembert.structure import Structure
-from dalembert.structure.eigenmodes import dense, lanczos, real_part
+from dalembert.structure.eigenmodes import real_part
 from dalembert.structure.factorise import factorise
-from dalembert.vibration.interface.condensation import COUPLED, DENSE, coupled
 from dalembert.vibration.interface.free_motions import FLOATING, free_motions
+from dalembert.vibration.interface.stuck_modes import STATIC, Solve, stuck_modes
 
-FEWEST, MOST = 40, 1280
-"""Modes of a structure that is not small."""
-COUPLED_MODES = 300
-"""Modes that a damping may couple: a matrix of them is inverted for each harmonic."""
-STATIC = 1 / 400
-"""(s/ω)² of the first mode that is left out where modes are computed. It follows its forces as in statics."""
 ENOUGH = 4 * STATIC
 """The largest such part, above which more modes are computed."""
 CHUNK = 256
 """Columns of the compliance that are solved for at a time."""
 WHAT = "the stiffness of the structure whose contacts stick"
-
-
-Solve = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -98,21 +86,11 @@ def stuck_structure(
     """
     stiffness, mass = _stiffened(structure, rows, reference), real_part(structure.mass)
     solve = held(structure, rows, reference) if before is None else before.solve
-    # All modes of a small structure: the receptance is then exact at every frequency.
-    if structure.size <= DENSE:
-        inertias, shapes = _all_modes(mass, stiffness)
-    else:
-        inertias, shapes = _slow_modes(csc_array(mass), csc_array(stiffness), solve, highest)
-    damping, loss = _damping(structure, shapes)
-    if max(damping.ndim, loss.ndim) == 2 and len(inertias) > COUPLED_MODES:
-        # A full matrix of all modes for each harmonic costs too much: the slow ones, as of a large structure.
-        count = max(COUPLED_MODES, int(np.sum(highest**2 * inertias > STATIC)))
-        inertias, shapes = inertias[:count], np.ascontiguousarray(shapes[:, :count])
-        damping, loss = _damping(structure, shapes)
+    modes = stuck_modes(structure, stiffness, mass, solve, highest)
     free = _free_rows(structure, rows) if before is None else before.free
     # What is static does not depend on the modes.
     kept = {} if before is None else before._kept
-    return StuckStructure(rows, reference, solve, shapes, inertias, damping, loss, free, kept)
+    return StuckStructure(rows, reference, solve, *modes, free, kept)
 
 
 def _free_rows(structure: Structure, rows: Any) -> np.ndarray:
@@ -120,27 +98,6 @@ def _free_rows(structure: Structure, rows: Any) -> np.ndarray:
     moved = np.asarray(rows @ free_motions(real_part(structure.stiffness)))
     shapes, sizes, _ = np.linalg.svd(moved, full_matrices=False)
     return shapes[:, sizes > FLOATING * sizes.max(initial=0.0)]
-
-
-def couples(structure: Structure) -> bool:
-    """Whether the damping of a structure couples its modes, whatever the stiffnesses of its contacts."""
-    damping, mass = structure.damping, real_part(structure.mass)
-    if structure.loss is not None and abs(real_part(structure.loss)).max() > 0:
-        return True
-    if damping is None or not abs(damping).max():
-        return False
-    # Damping in proportion to the mass alone, C = αM, does not.
-    damping = real_part(damping)
-    factor = damping.diagonal().sum() / mass.diagonal().sum()
-    return bool(abs(damping - factor * mass).max() > COUPLED * abs(damping).max())
-
-
-def _damping(structure: Structure, shapes: np.ndarray) -> list[np.ndarray]:
-    """Return Vᵀ C V and Vᵀ D V."""
-    return [
-        np.zeros(shapes.shape[1]) if matrix is None else _among(shapes, real_part(matrix))
-        for matrix in (structure.damping, structure.loss)
-    ]
 
 
 def held(structure: Structure, rows: csc_array, reference: np.ndarray) -> Solve:
@@ -163,39 +120,3 @@ def _stiffened(structure: Structure, rows: csc_array, reference: np.ndarray) -> 
     added = rows.T @ diags_array(reference) @ rows
     stiffness = real_part(structure.stiffness)
     return csc_array(stiffness + added) if issparse(stiffness) else stiffness + added.toarray()
-
-
-def _all_modes(mass: Any, stiffness: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return all modes, the slowest first: M v = μ K_r v."""
-    # In this order, and not K_r φ = ω² M φ: rounding is a part of the largest eigenvalue, which is here that of the
-    # slowest mode. Of a lap joint's response 2e-10 is lost, in the other order 8e-8.
-    try:
-        inertias, shapes = eigh(dense(mass), dense(stiffness))
-    except np.linalg.LinAlgError:
-        raise SolveError(f"{WHAT} is not positive definite. Clamp what moves, or use solver='stiffness'") from None
-    return np.clip(inertias[::-1], 0.0, None), np.ascontiguousarray(shapes[:, ::-1])
-
-
-def _slow_modes(mass: Any, stiffness: Any, solve: Any, highest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the slowest modes, as many as the highest frequency needs."""
-    count = FEWEST
-    while True:
-        squares, shapes = lanczos(mass, stiffness, min(count, mass.shape[0] - 1), solve)
-        # Degrees of freedom without mass have no frequency.
-        order = [place for place in np.argsort(squares) if 0 < squares[place] < np.inf]
-        fastest = squares[order[-1]]
-        if highest**2 <= STATIC * fastest or len(order) < len(squares):
-            # From φᵀ M φ = 1 to Vᵀ K_r V = 1: V = φ/ω, μ = 1/ω².
-            return 1 / squares[order], np.ascontiguousarray(shapes[:, order] / np.sqrt(squares[order]))
-        if count >= MOST:
-            raise SolveError(
-                f"the highest harmonic, {highest / (4 * np.pi):.4g} Hz, needs more than {MOST} modes of the structure; "
-                "use fewer harmonics, a coarser mesh, or solver='stiffness'"
-            )
-        count *= 2
-
-
-def _among(shapes: np.ndarray, matrix: Any) -> np.ndarray:
-    """Return Vᵀ C V, or its diagonal where it couples no modes."""
-    among = shapes.T @ (matrix @ shapes)
-    return among if coupled(among) else np.diag(among).copy()

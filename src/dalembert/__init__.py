@@ -76,7 +76,7 @@ _NAMES = {
         HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
-        Deformation deformation
+        Deformation deformation StaticContact static_contact
         Newmark PeriodicMotion TimeComparison compare_in_time steady_state
     """,
 }

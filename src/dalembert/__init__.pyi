@@ -220,6 +220,7 @@ from dalembert.vibration import Newmark as Newmark
 from dalembert.vibration import PeriodicMotion as PeriodicMotion
 from dalembert.vibration import ResonanceTrack as ResonanceTrack
 from dalembert.vibration import Rigid as Rigid
+from dalembert.vibration import StaticContact as StaticContact
 from dalembert.vibration import StaticForce as StaticForce
 from dalembert.vibration import TimeComparison as TimeComparison
 from dalembert.vibration import UserElement as UserElement
@@ -232,6 +233,7 @@ from dalembert.vibration import floquet_multipliers as floquet_multipliers
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
 from dalembert.vibration import law as law
+from dalembert.vibration import static_contact as static_contact
 from dalembert.vibration import steady_state as steady_state
 from dalembert.vibration import track_resonance as track_resonance
 

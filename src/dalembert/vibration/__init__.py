@@ -27,6 +27,7 @@ _NAMES = {
     "responses.frequency_responses": "frequency_responses",
     "responses.resonance": "track_resonance",
     "responses.resonance_track": "ResonanceTrack",
+    "responses.static_contact": "StaticContact static_contact",
     "stability.floquet": "floquet_multipliers",
     "system.system": "HarmonicForce StaticForce VibrationSystem",
     "time.comparison": "TimeComparison compare_in_time",

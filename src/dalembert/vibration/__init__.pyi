@@ -27,6 +27,8 @@ from dalembert.vibration.responses.frequency_response import frequency_response 
 from dalembert.vibration.responses.frequency_responses import frequency_responses as frequency_responses
 from dalembert.vibration.responses.resonance import track_resonance as track_resonance
 from dalembert.vibration.responses.resonance_track import ResonanceTrack as ResonanceTrack
+from dalembert.vibration.responses.static_contact import StaticContact as StaticContact
+from dalembert.vibration.responses.static_contact import static_contact as static_contact
 from dalembert.vibration.stability.floquet import floquet_multipliers as floquet_multipliers
 from dalembert.vibration.system.system import HarmonicForce as HarmonicForce
 from dalembert.vibration.system.system import StaticForce as StaticForce

@@ -13,6 +13,7 @@ _NAMES = {
     "frequency.interface_map": "interface_map",
     "frequency.linear_modes": "campbell reduction_errors",
     "frequency.shapes": "deformation mode_shapes",
+    "frequency.static_contact": "normal_forces",
     "frequency.time_domain": "loops_in_time periodic_motion time_comparison",
     "identification.assessment": "horizons prediction profile ranking",
     "identification.identifiability": "correlation singular_values",

@@ -21,6 +21,7 @@ from dalembert.report.charts.frequency.linear_modes import campbell as campbell
 from dalembert.report.charts.frequency.linear_modes import reduction_errors as reduction_errors
 from dalembert.report.charts.frequency.shapes import deformation as deformation
 from dalembert.report.charts.frequency.shapes import mode_shapes as mode_shapes
+from dalembert.report.charts.frequency.static_contact import normal_forces as normal_forces
 from dalembert.report.charts.frequency.time_domain import loops_in_time as loops_in_time
 from dalembert.report.charts.frequency.time_domain import periodic_motion as periodic_motion
 from dalembert.report.charts.frequency.time_domain import time_comparison as time_comparison

@@ -10,7 +10,7 @@ from dalembert.report.scene.shape import magnified
 from dalembert.report.section import Block, Motion, Plot, Row, Section
 from dalembert.tables import percent, shown
 from dalembert.units import unit_of
-from dalembert.vibration import Backbone, Deformation, FrequencyCurve, PeriodicMotion, TimeComparison
+from dalembert.vibration import Backbone, Deformation, FrequencyCurve, PeriodicMotion, StaticContact, TimeComparison
 
 STEADY = 1e-3
 """Change of the frequency, as part of it, below which none is stated."""
@@ -74,6 +74,16 @@ def deformed(shape: Deformation) -> Section:
         at = f"Contact states over the interface at {shown(shape.frequency)} Hz"
         blocks.append(Plot("interface-map", charts.interface_map(shape, title=at), over))
     return Section("Deformed shape", blocks)
+
+
+@sections_of(StaticContact)
+def static_contact(joint: StaticContact, options: ReportOptions) -> list[Section]:
+    """Normal forces over the interface, and those of the contacts that carry most."""
+    blocks = list[Block]()
+    if np.isfinite(joint.contact_places).all(axis=1).any():
+        how = "Coloured by the normal force; a thick ring: the contact slips; hollow: it is open."
+        blocks.append(Plot("normal-forces", charts.normal_forces(joint), how))
+    return [headline_of(joint), Section("Contacts at rest", (*blocks, *joint.tables()))]
 
 
 @sections_of(TimeComparison)

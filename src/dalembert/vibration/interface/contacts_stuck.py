@@ -49,6 +49,11 @@ class ContactsStuck:
 
         SolveError if a part moves even with closed contacts and stops.
         """
+        return self.at_rest[0]
+
+    @cached_property
+    def at_rest(self) -> tuple[np.ndarray, np.ndarray]:
+        """The reference, and displacements of all degrees of freedom (n,) under the static forces with it."""
         closed = self._stiffnesses([np.ones(len(block.rows), dtype=bool) for block in self.lowered.blocks])
         try:
             return self._at_rest(closed)
@@ -56,8 +61,18 @@ class ContactsStuck:
             # A part that only open contacts, stops or springs that are not linear may hold: all of them count as
             # closed.
             with_laws = closed + self._law_stiffnesses()
-            held(self.lowered.structure, self.lowered.matrix, with_laws)
-            return with_laws
+            solve = held(self.lowered.structure, self.lowered.matrix, with_laws)
+            return with_laws, solve(self.static_forces)
+
+    @cached_property
+    def static_forces(self) -> np.ndarray:
+        """On all degrees of freedom, N, (n,)."""
+        lowered = self.lowered
+        force = np.zeros(lowered.structure.size)
+        for entry in lowered.forces:
+            if isinstance(entry, StaticForce):
+                force[lowered.structure.dofs.index(entry.dof)] += np.real(entry.value)
+        return force
 
     def receptances(self, series: Fourier, loads: np.ndarray, omega: float) -> Receptances:
         """Receptances at ω, and near it, with the harmonics of a series. ``loads`` (orders, n): their phasors."""
@@ -96,13 +111,9 @@ class ContactsStuck:
             result[rows] += stiffest
         return result
 
-    def _at_rest(self, closed: np.ndarray) -> np.ndarray:
-        """Stiffnesses of the rows where contacts are closed under the static forces, and none slips."""
+    def _at_rest(self, closed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The reference where contacts are closed under the static forces, and none slips, and displacements."""
         lowered, reference = self.lowered, closed
-        force = np.zeros(lowered.structure.size)
-        for entry in lowered.forces:
-            if isinstance(entry, StaticForce):
-                force[lowered.structure.dofs.index(entry.dof)] += np.real(entry.value)
         for _ in range(ROUNDS):
             pushed = np.zeros(len(reference))
             for block in lowered.blocks:
@@ -114,14 +125,14 @@ class ContactsStuck:
             # Contacts that the solution opens lose their stiffness, those that it closes get it: the active set of a
             # problem with a unique solution settles after few rounds.
             solve = held(lowered.structure, lowered.matrix, reference)
-            moved = lowered.matrix @ solve(force + lowered.matrix.T @ pushed)
+            displaced = solve(self.static_forces + lowered.matrix.T @ pushed)
+            moved = lowered.matrix @ displaced
             better = self._stiffnesses([_closed(block, moved) for block in lowered.blocks])
             if np.array_equal(better, reference):
-                return reference
+                return reference, displaced
             reference = better
         # The search goes round in a circle: with all contacts closed, the equations are correct too.
-        held(lowered.structure, lowered.matrix, closed)
-        return closed
+        return closed, held(lowered.structure, lowered.matrix, closed)(self.static_forces)
 
     def _stiffnesses(self, closed: list[np.ndarray]) -> np.ndarray:
         """Stiffnesses of the rows (rows,) where some contacts of each block are closed."""

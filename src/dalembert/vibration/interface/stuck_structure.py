@@ -87,17 +87,13 @@ def stuck_structure(
     stiffness, mass = _stiffened(structure, rows, reference), real_part(structure.mass)
     solve = held(structure, rows, reference) if before is None else before.solve
     modes = stuck_modes(structure, stiffness, mass, solve, highest)
-    free = _free_rows(structure, rows) if before is None else before.free
+    # The rows in motions that the structure does not resist, orthonormal; without those that move none.
+    moved = np.asarray(rows @ free_motions(real_part(structure.stiffness)))
+    left, sizes, _ = np.linalg.svd(moved, full_matrices=False)
+    free = left[:, sizes > FLOATING * sizes.max(initial=0.0)]
     # What is static does not depend on the modes.
     kept = {} if before is None else before._kept
     return StuckStructure(rows, reference, solve, *modes, free, kept)
-
-
-def _free_rows(structure: Structure, rows: Any) -> np.ndarray:
-    """Return the rows in motions that the structure does not resist, orthonormal; without those that move none."""
-    moved = np.asarray(rows @ free_motions(real_part(structure.stiffness)))
-    shapes, sizes, _ = np.linalg.svd(moved, full_matrices=False)
-    return shapes[:, sizes > FLOATING * sizes.max(initial=0.0)]
 
 
 def held(structure: Structure, rows: csc_array, reference: np.ndarray) -> Solve:

@@ -53,7 +53,7 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
         f"{100 * parts['separated'][k]:.0f} %, {factor * energies[k]:.3g} {unit}"
         for k, name in enumerate(shape.contacts)
     ]
-    figure = go.Figure([_structure(shape, wide), *_legend()])
+    figure = go.Figure([outline(shape.places, shape.faces, wide), *_legend()])
     ring = {"width": 3 if len(sizes) <= MANY else 1.5, "color": rings[longest]}
     marker = {"size": sizes, "color": colours[shape.states[:, 0]], "line": ring, "opacity": 1}
     hover = {"text": text, "hovertemplate": "%{text}<extra></extra>"}
@@ -76,11 +76,11 @@ def interface_map(shape: Deformation, *, title: str | None = None) -> go.Figure:
     return themed(figure, title, 480, x=across, y=up, showlegend=True, **controls(film))
 
 
-def _structure(shape: Deformation, wide: np.ndarray) -> go.Scatter:
-    """The edges of the structure at rest, from above."""
-    ends = edges(shape.places, shape.faces)
+def outline(places: np.ndarray, faces: np.ndarray, wide: np.ndarray) -> go.Scatter:
+    """The edges of a structure at rest, from above: along two of its axes, ``wide``."""
+    ends = edges(places, faces)
     lines = np.full((len(ends), 3, 2), np.nan, dtype=np.float32)
-    lines[:, :2] = shape.places[ends][:, :, wide]
+    lines[:, :2] = places[ends][:, :, wide]
     x, y = lines.reshape(-1, 2).T
     line = {"color": LIGHT.grid, "width": 1.5}
     return go.Scatter(x=x, y=y, mode="lines", line=line, hoverinfo="skip", showlegend=False)

@@ -60,7 +60,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
             return float(curve.amplitude(quantity, row["amplitude"])[point])
         case "frequency_response" if quantity == "largest difference in time":
             return float(np.abs(getattr(outcome, "further_results")["time_comparison"].differences).max())  # noqa: B009
-        case "frequency_response" | "backbone" | "track_resonance":
+        case "frequency_response" | "backbone" | "track_resonance" | "static_contact":
             return outcome.best["values"][quantity]
         case "regularise" if quantity == "rms of history":
             truth = np.loadtxt(study.path.parent / row["table"], delimiter=",", skiprows=1)

@@ -84,6 +84,7 @@ TABLES = {
     "Newmark": ["frequency_response"],
     "TrackResonanceTable": ["track_resonance"],
     "BackboneTable": ["backbone"],
+    "StaticContactTable": ["static_contact"],
     "ModesTable": ["modes"],
     "HarmonicBalance": ["harmonic_balance"],
     "LocalParameterTable": [r"parameters\.NAME", "experiments"],

@@ -247,8 +247,8 @@ class ReceptanceTangent:
             rows, columns = cells.rows[order], cells.rows.shape[1]
             # (1 + G_cc m)⁻¹ with the static G_cc, which is the same for all harmonics: the inertia of a contact's own
             # compliance matters little, as its modes are the fastest ones.
-            own = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
-            product = (own @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
+            compliance = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
+            product = (compliance @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
             product[:, np.arange(columns * size), np.arange(columns * size)] += 1.0
             try:
                 inverses = np.linalg.inv(product)

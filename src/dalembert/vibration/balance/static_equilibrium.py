@@ -33,13 +33,12 @@ SOFT = 1e-9
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Displacements of all degrees of freedom (n,), forces of the elements by rows (rows,), states of contacts by block
-    (cells,), Newton steps, and the residual as part of the forces.
+    """Displacements of all degrees of freedom (n,), forces of the elements by rows (rows,), Newton steps,
+    and the residual as part of the forces.
     """
 
     displacements: np.ndarray
     forces: np.ndarray
-    states: tuple[np.ndarray, ...]
     steps: int
     error: float
 
@@ -54,11 +53,10 @@ def static_equilibrium(lowered: Lowered) -> Equilibrium:
     stiffness, rows, force = csc_array(real_part(lowered.structure.stiffness)), lowered.matrix, stuck.static_forces
 
     def place(displacements: np.ndarray, steps: int) -> "_Place":
-        acting, states = elements.forces(0.0, (rows @ displacements)[:, None])
+        acting, _ = elements.forces(0.0, (rows @ displacements)[:, None])
         residual = stiffness @ displacements + rows.T @ acting[:, 0] - force
         error = norm(residual) / (norm(force) + norm(acting) or 1.0)
-        states = tuple(block[:, 0] for block in states)
-        return _Place(Equilibrium(displacements, acting[:, 0], states, steps, error), residual)
+        return _Place(Equilibrium(displacements, acting[:, 0], steps, error), residual)
 
     def moved(at: "_Place", change: np.ndarray, part: float) -> "_Place":
         known = at.equilibrium

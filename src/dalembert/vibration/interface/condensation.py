@@ -86,7 +86,7 @@ class CondensedStructure:
 
     @property
     def resonates(self) -> bool:
-        """Whether there is no dynamic stiffness in some motion at a harmonic that forces act in."""
+        """Whether a forced harmonic drives a motion that has no dynamic stiffness."""
         forced = np.abs(self.force).max(axis=1, initial=0.0) > FLOATING * self.load
         stiffness = self.stiffness[forced & (self.frequencies > 0)]
         if not stiffness.size:

@@ -177,12 +177,12 @@ def static_contact(system: VibrationSystem) -> StaticContact:
     if not lowered.contacts:
         raise InputError("static_contact: the system has no friction contact; add one (FrictionContact)")
     prepare(balance_kernels(lowered, events=False, residuals=True, derivatives=False))
-    found = static_equilibrium(lowered)
-    normal, tangential, openings, states = _by_contact(lowered, found)
+    equilibrium = static_equilibrium(lowered)
+    normal, tangential, openings, states = _by_contact(lowered, equilibrium)
     places, faces, contact_places = _places(system, lowered)
     return StaticContact(
         dofs=lowered.structure.dofs.names,
-        displacements=found.displacements,
+        displacements=equilibrium.displacements,
         contacts=lowered.contacts,
         normal=normal,
         tangential=tangential,
@@ -191,27 +191,27 @@ def static_contact(system: VibrationSystem) -> StaticContact:
         contact_places=contact_places,
         places=places,
         faces=faces,
-        residual=found.error,
-        provenance={**versions(), "steps": found.steps},
+        residual=equilibrium.error,
+        provenance={**versions(), "steps": equilibrium.steps},
         findings=_findings(normal, openings),
     )
 
 
-def _by_contact(lowered: Lowered, found: Equilibrium) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _by_contact(lowered: Lowered, equilibrium: Equilibrium) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Normal forces, tangential forces, openings and states of the contacts, of whose cells there may be several."""
     count = len(lowered.contacts)
     normal, tangential, openings = np.zeros(count), np.full((count, 2), np.nan), np.full(count, np.nan)
     states = np.full(count, SEPARATED, dtype=np.uint8)
-    moved = lowered.matrix @ found.displacements
+    moved = lowered.matrix @ equilibrium.displacements
     for block in lowered.blocks:
         np.add.at(normal, block.contacts, block.numbers[:, LOAD])
-        tangential[block.contacts, : block.tangents] = found.forces[block.rows[:, : block.tangents]]
+        tangential[block.contacts, : block.tangents] = equilibrium.forces[block.rows[:, : block.tangents]]
         # A contact slips if one of its cells does.
         np.maximum.at(states, block.contacts, _states(block, moved[block.rows]))
         if block.normal:
             openings[block.contacts] = block.numbers[:, GAP] - moved[block.rows[:, -1]]
             firsts = np.unique(block.contacts, return_index=True)[1]
-            normal[block.contacts[firsts]] += found.forces[block.rows[firsts, -1]]
+            normal[block.contacts[firsts]] += equilibrium.forces[block.rows[firsts, -1]]
     return normal, tangential, openings, states
 
 

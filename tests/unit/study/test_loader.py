@@ -12,6 +12,8 @@ from dalembert.study.tasks import TASKS
 from json_schemas import fits
 from support import says
 
+# Every task, in the order in which messages list them.
+ALL_TASKS = ", ".join(f"[{name}]" for name in TASKS)
 DECAY = """
 import numpy as np
 from dalembert.forward import PythonModel
@@ -286,19 +288,13 @@ horizon = "growin"
         (
             ("[solver]", "[sweep]\nat=1\nchannels=['x']\nover.theta=[1.0]\n[solver]"),
             [
-                "study.toml: [simulate] and [sweep] are given; a study has one task, one of "
-                "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [regularise], [global_sensitivity], [identify_bands], [screening], "
-                "[identify_set], [design], [exciting_trajectory], "
-                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes], [campbell], [equilibrium_path]"
+                "study.toml: [simulate] and [sweep] are given; a study has one task, one of " + ALL_TASKS
             ],
         ),
         (
             ('[simulate]\nend = "1 s"', ""),
             [
-                "study.toml: no task is given; a study has one task, one of "
-                "[simulate], [identify], [sample], [sweep], [identify_inertias], [propagate], [regularise], [global_sensitivity], [identify_bands], [screening], "
-                "[identify_set], [design], [exciting_trajectory], "
-                "[work_precision], [frequency_response], [track_resonance], [backbone], [modes], [campbell], [equilibrium_path]"
+                "study.toml: no task is given; a study has one task, one of " + ALL_TASKS
             ],
         ),
         (('[solver]\nstep = "1 ms"', ""), ["study.toml: the table [solver] is missing; expected at least its step"]),
@@ -449,9 +445,8 @@ def test_a_file_that_is_not_there_names_the_near_one(write):
 def test_a_model_alone_is_told_how_a_study_names_it(write):
     with pytest.raises(InputError) as caught:
         load(write("[model]\nbody = []\n", "pendulum.toml"))
-    tasks = ", ".join(f"[{name}]" for name in TASKS)
     assert str(caught.value) == (
-        f"pendulum.toml: no task is given; a study needs a [model] and one task, one of {tasks}; a study in another "
+        f"pendulum.toml: no task is given; a study needs a [model] and one task, one of {ALL_TASKS}; a study in another "
         "file names a model by file = 'pendulum.toml' in [model]"
     )
 

@@ -71,7 +71,8 @@ _NAMES = {
         Chebyshev LatinHypercube MonteCarlo Optimise Scan Taylor Vertex
     """,
     "vibration": """
-        VibrationSystem HarmonicForce StaticForce FrictionContact ElasticSlider Iwan Rigid
+        VibrationSystem HarmonicForce StaticForce Unbalance TabulatedForce BaseExcitation
+        FrictionContact ElasticSlider Iwan Rigid
         CubicSpring Gap BilinearStop BoucWen FourParameterIwan LawElement UserElement UserLaw law
         HarmonicBalance FrequencyCurve FrequencyResponse frequency_response
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance

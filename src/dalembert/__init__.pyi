@@ -201,6 +201,7 @@ from dalembert.uncertainty import global_sensitivity as global_sensitivity
 from dalembert.uncertainty import propagate as propagate
 from dalembert.uncertainty import screen as screen
 from dalembert.vibration import Backbone as Backbone
+from dalembert.vibration import BaseExcitation as BaseExcitation
 from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import BoucWen as BoucWen
 from dalembert.vibration import CubicSpring as CubicSpring
@@ -222,7 +223,9 @@ from dalembert.vibration import ResonanceTrack as ResonanceTrack
 from dalembert.vibration import Rigid as Rigid
 from dalembert.vibration import StaticContact as StaticContact
 from dalembert.vibration import StaticForce as StaticForce
+from dalembert.vibration import TabulatedForce as TabulatedForce
 from dalembert.vibration import TimeComparison as TimeComparison
+from dalembert.vibration import Unbalance as Unbalance
 from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import UserLaw as UserLaw
 from dalembert.vibration import VibrationSystem as VibrationSystem

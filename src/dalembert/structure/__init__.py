@@ -14,12 +14,14 @@ from dalembert.structure.nodes import Nodes
 from dalembert.structure.patched_plate import Patch, foot_pairs, patched_plate
 from dalembert.structure.plate import plate
 from dalembert.structure.read_structure import read_structure, write_structure
+from dalembert.structure.rotors import Disc, RotatingDamper, with_rotors
 from dalembert.structure.solid import box, solid
 from dalembert.structure.springs import lumped
 from dalembert.structure.structure import Structure
 
 __all__ = [
     "Campbell",
+    "Disc",
     "Dofs",
     "EigenModes",
     "FreeBodyModes",
@@ -32,6 +34,7 @@ __all__ = [
     "Rayleigh",
     "ReducedStructure",
     "ReductionErrors",
+    "RotatingDamper",
     "Structure",
     "box",
     "combine",
@@ -50,5 +53,6 @@ __all__ = [
     "solid",
     "strain_between",
     "tie",
+    "with_rotors",
     "write_structure",
 ]

@@ -113,7 +113,7 @@ class ReducedStructure(Structure):
 
     Parameters
     ----------
-    mass, stiffness, dofs, damping, nodes, loss
+    mass, stiffness, dofs, damping, nodes, loss, gyroscopic, circulatory
         As of every :class:`Structure`; dense.
     basis : array, shape (n, reduced size)
         The motion of the full structure for each coordinate.

@@ -197,6 +197,11 @@ def free_body_modes(
             "free_body_modes: the structure has hysteretic damping, which motions in time do not have. Give it "
             "viscous damping: with_damping(Rayleigh(...))"
         )
+    if structure.rotates:
+        raise InputError(
+            "free_body_modes: the structure has gyroscopic or circulatory parts. A body that moves in space has them "
+            "by its motion; leave them out"
+        )
     if modes < 1:
         raise InputError(f"free_body_modes: modes is {modes}; expected 1 or more")
     if not interfaces:

@@ -17,6 +17,8 @@ ROLES = {
     "stiffness": ("stiffness", "k", "kaa", "kgg"),
     "damping": ("damping", "c", "d", "baa", "bgg"),
     "loss": ("loss", "k4aa", "k4gg"),
+    "gyroscopic": ("gyroscopic",),
+    "circulatory": ("circulatory",),
 }
 """What matrices are usually called in files, in small letters; the last ones are Nastran's."""
 

@@ -20,9 +20,11 @@ from dalembert.structure.nodes import Nodes
 Matrix = Any
 """A NumPy array or a SciPy sparse array, (n, n), real, or complex with a complex step as its imaginary part."""
 
-MATRICES = ("mass", "stiffness", "damping", "loss")
-"""Of a structure, in the order of a dynamic stiffness."""
-OPTIONAL = ("damping", "loss")
+SYMMETRIC = ("mass", "stiffness", "damping", "loss")
+ROTATING = ("gyroscopic", "circulatory")
+"""Matrices in proportion to the speed of a rotor."""
+MATRICES = (*SYMMETRIC, *ROTATING)
+OPTIONAL = ("damping", "loss", *ROTATING)
 ASYMMETRY = 1e-8
 """Largest difference from its transpose, as part of the largest entry, that is taken for rounding."""
 STEP = 1e-10
@@ -33,11 +35,15 @@ FAINT = 1e-20
 
 @dataclass(frozen=True, eq=False)
 class Structure(Displayed, Checked):
-    r"""A linear structure :math:`M \ddot x + C \dot x + K x = f`, perhaps with hysteretic damping.
+    r"""A linear structure :math:`M \ddot x + C \dot x + K x = f`, perhaps with hysteretic damping or a rotor.
 
     Hysteretic (structural) damping is a loss matrix D: the dynamic stiffness at :math:`\omega > 0` is
     :math:`K - \omega^2 M + i \omega C + i D`. It has no meaning for other motions than harmonic ones, so integration in
     time, stability and nonlinear modes refuse it. D does not act on the mean of a motion.
+
+    A rotor with the speed Ω adds the forces :math:`\Omega (G \dot x + N x)`, with the gyroscopic matrix G and the
+    circulatory matrix N, of damping that turns with the rotor; see :func:`with_rotors`. The speed belongs to a
+    :class:`~dalembert.vibration.VibrationSystem`; modes of the structure alone are those at rest.
 
     Parameters
     ----------
@@ -52,12 +58,14 @@ class Structure(Displayed, Checked):
         Where the nodes are, and their sets.
     loss : array or sparse array, shape (n, n), optional
         Hysteretic damping, N/m; none if not given. See :meth:`with_loss` for a loss factor.
+    gyroscopic, circulatory : array or sparse array, shape (n, n), optional
+        G and N, kg and N s/m where all unknowns are displacements; none if not given. They need no symmetry.
 
     Raises
     ------
     InputError
-        For matrices whose sizes do not fit, or that are not symmetric or not finite, for negative masses, and for
-        imaginary parts that are too large to be directions of derivatives.
+        For matrices whose sizes do not fit, or that are not finite, for a mass, stiffness, damping or loss that is not
+        symmetric, for negative masses, and for imaginary parts that are too large to be directions of derivatives.
 
     Examples
     --------
@@ -73,6 +81,8 @@ class Structure(Displayed, Checked):
     damping: Matrix | None = None
     nodes: Nodes | None = None
     loss: Matrix | None = None
+    gyroscopic: Matrix | None = None
+    circulatory: Matrix | None = None
 
     def __post_init__(self) -> None:
         if not self.size:
@@ -95,7 +105,7 @@ class Structure(Displayed, Checked):
             entries = matrix.data if issparse(matrix) else matrix
             if not np.all(np.isfinite(entries)):
                 raise InputError(f"Structure: the {name} matrix has entries that are not finite numbers")
-            off = abs(matrix - matrix.T).max()
+            off = abs(matrix - matrix.T).max() if name in SYMMETRIC else 0.0
             if off > ASYMMETRY * abs(matrix).max():
                 raise InputError(
                     f"Structure: the {name} matrix is not symmetric, it differs from its transpose by up to {off:.3g}; "
@@ -119,6 +129,12 @@ class Structure(Displayed, Checked):
     def size(self) -> int:
         """Number of degrees of freedom."""
         return len(self.dofs)
+
+    @property
+    def rotates(self) -> bool:
+        """Whether a part of it belongs to a rotor."""
+        parts = (self.gyroscopic, self.circulatory)
+        return any(matrix is not None and abs(matrix).max() > 0 for matrix in parts)
 
     def rows(self, names: str | Sequence[str]) -> list[int]:
         """Rows of degrees of freedom, of all those of nodes, or of all those of sets of nodes.

@@ -128,7 +128,7 @@ def _(model: BaseSystem) -> Summary | None:
 def _(model: VibrationSystem) -> Summary:
     facts = {
         "degrees of freedom": str(model.structure.size),
-        "forces": ", ".join(dict.fromkeys(force.dof for force in model.forces)),
+        "forces": ", ".join(dict.fromkeys(dof for force in model.forces for dof in force.dofs)),
         "contacts and springs": ", ".join(_named(model.elements)),
     }
     drawing = picture(model)

@@ -55,12 +55,12 @@ def _mesh(system: "VibrationSystem", channels: Sequence[str]) -> Scene:
             at = places[nodes.rows([node])]
             shapes.append(Primitive("ring", "channel", channel, at[None], 1))
             labels.append(Label("channel", channel, at[0], channel, 1))
-    for force in system.forces:
-        node, _, axis = force.dof.rpartition(".")
+    for dof in _forced(system):
+        node, _, axis = dof.rpartition(".")
         if node in known and axis in AXES:
             at = places[nodes.rows([node])]
-            shapes.append(Primitive("arrow", "force", force.dof, at[None], 3, along=np.array(AXES[axis])))
-            labels.append(Label("force", force.dof, at[0], force.dof))
+            shapes.append(Primitive("arrow", "force", dof, at[None], 3, along=np.array(AXES[axis])))
+            labels.append(Label("force", dof, at[0], dof))
     return Scene(tuple(shapes), readable(labels))
 
 
@@ -79,10 +79,15 @@ def _row(system: "VibrationSystem", masses: list[str], channels: Sequence[str]) 
     for channel in channels:
         if (node := node_of(channel, masses)) is not None:
             shapes.append(Primitive("ring", "channel", channel, at[node][None, None], 1))
-    for dof in dict.fromkeys(force.dof for force in system.forces):
+    for dof in _forced(system):
         if (node := node_of(dof, masses)) is not None:
             shapes.append(Primitive("arrow", "force", dof, at[node][None, None], 3))
     return Scene(tuple(shapes), to_scale=False)
+
+
+def _forced(system: "VibrationSystem") -> list[str]:
+    """Degrees of freedom on which forces act, each once."""
+    return list(dict.fromkeys(dof for force in system.forces for dof in force.dofs))
 
 
 def node_of(name: str, known: Container[str]) -> str | None:

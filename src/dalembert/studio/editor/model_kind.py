@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-STRUCTURE = ("mass", "spring", "force", "contact", "structure")
+STRUCTURE = ("mass", "spring", "rotor", "speed", "force", "contact", "structure")
 """Tables of structures."""
 _KEYS: dict[str, tuple[str, ...]] = {
     "file": ("file",),

@@ -8,7 +8,7 @@ from dalembert.studio.editor.lines import Place, is_within
 if TYPE_CHECKING:
     from dalembert.study import Study
 
-STRUCTURE = {"mass": "body", "spring": "spring", "force": "force", "contact": "contact"}
+STRUCTURE = {"mass": "body", "spring": "spring", "rotor": "rotor", "force": "force", "contact": "contact"}
 """Roles in the drawing of the tables of a structure."""
 
 
@@ -89,8 +89,11 @@ def _channel_place(study: "Study", channel: str) -> Place:
 
 def _names(table: str, part: Any) -> list[str]:
     """Names that the drawing of a structure gives to what a table describes."""
+    if table == "rotor":
+        return [f"{part.first} – {part.second}"]
     if table == "force":
-        return [part.dof, f"{part.dof}.x"]
+        dofs = [dof for key in ("dof", "first", "second") if (dof := getattr(part, key, None)) is not None]
+        return [name for dof in dofs for name in (dof, f"{dof}.x")] or [part.direction]
     if table == "spring" and not hasattr(part, "name"):
         ends = part.first, part.second
         first, second = ("ground" if end is None else end.rpartition(".")[0] or end for end in ends)

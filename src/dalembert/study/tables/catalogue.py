@@ -10,6 +10,7 @@ from pydantic import AfterValidator
 
 from dalembert.component_index import HOMES, KINDS, SPATIAL_HOMES, SPATIAL_KINDS
 from dalembert.kinds import derived_dataclasses, distinct, load_modules, load_plugins, named
+from dalembert.structure.rotors import Disc, RotatingDamper
 from dalembert.study.tables.dataclass_tables import any_of, buildable, settings_of, table_of
 from dalembert.study.tables.structure_parts import LinearSpring, LumpedMass
 
@@ -76,7 +77,14 @@ def structure_parts() -> dict[str, tuple[type, ...]]:
     return {
         "mass": (LumpedMass,),
         "spring": (LinearSpring, *laws, vibration.UserElement),
-        "force": (vibration.HarmonicForce, vibration.StaticForce),
+        "rotor": (Disc, RotatingDamper),
+        "force": (
+            vibration.HarmonicForce,
+            vibration.StaticForce,
+            vibration.Unbalance,
+            vibration.TabulatedForce,
+            vibration.BaseExcitation,
+        ),
         "contact": (vibration.FrictionContact,),
     }
 

@@ -11,7 +11,14 @@ from dalembert.study.tables.catalogue import Words, kinds_of
 from dalembert.study.tables.dataclass_tables import any_of, table_of
 from dalembert.study.tables.inputs import signal_or_input
 from dalembert.study.tables.robot_table import RobotTable
-from dalembert.study.tables.structure_table import PARTS, StructureTable, part_tables, structure_table, wrong_structure
+from dalembert.study.tables.structure_table import (
+    PARTS,
+    StructureTable,
+    part_tables,
+    rotor_speed,
+    structure_table,
+    wrong_structure,
+)
 from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.places import JointName, Place
 from dalembert.study.text.spaces import IN_SPACE, by_joint, gravity_key, is_in_space
@@ -25,6 +32,7 @@ _MEANINGS = {
     "load": "a force, spring, motor or sensor of a mechanism",
     "mass": "a mass of a structure",
     "spring": "a spring of a structure",
+    "rotor": "a disc or a rotating damper of a structure",
     "force": "a force on a structure",
     "contact": "a contact of a structure",
 }
@@ -63,6 +71,10 @@ class ModelTable(StudyTable):
     structure: StructureTable | None = None
     mass: list[Any] = []
     spring: list[Any] = []
+    rotor: list[Any] = []
+    speed: Annotated[Any, Read(rotor_speed())] = Field(
+        0.0, description="of the rotor parts of a structure: '300 rpm', or 'synchronous' for that of the excitation"
+    )
     force: list[Any] = []
     contact: list[Any] = []
 
@@ -133,8 +145,8 @@ class ModelTable(StudyTable):
                 else "here a function gives it"
             )
             raise problem(
-                "structure, spring, force and contact belong to a structure of [[model.mass]] tables or of matrices in "
-                f"[model.structure]; {stated}"
+                "structure, spring, rotor, force and contact belong to a structure of [[model.mass]] tables or of "
+                f"matrices in [model.structure]; {stated}"
             )
         states = self.driving or self.start or self.stated
         if "body" not in ways and (self.joint or self.load or self.gravity or states):

@@ -38,12 +38,17 @@ class StructureBuilder:
     watched: tuple[str, ...] = ()
 
     def __call__(self, **parameters: complex) -> "VibrationSystem":
+        from dalembert.structure import with_rotors
         from dalembert.vibration import VibrationSystem
 
         values = named_values(self.constants, parameters)
-        parts = {name: self._parts(name, values) for name in ("spring", "force", "contact")}
+        parts = {name: self._parts(name, values) for name in ("spring", "rotor", "force", "contact")}
         linear = [spring for spring in parts["spring"] if isinstance(spring, LinearSpring)]
-        system = VibrationSystem(self._structure(values, linear))
+        structure = _placed("[[model.rotor]]", with_rotors, self._structure(values, linear), parts["rotor"])
+        speed = self.model.speed
+        if not isinstance(speed, str):
+            speed = resolved(speed, values, "[model], speed")
+        system = VibrationSystem(structure, speed)
         for part in (*parts["force"], *parts["spring"], *parts["contact"]):
             if not isinstance(part, LinearSpring):
                 system.add(part)
@@ -126,7 +131,9 @@ class StructureBuilder:
         return _placed("[model.structure], reduction", craig_bampton, self._matrices, masters, reduction.modes)
 
     def _moved(self) -> list[str]:
-        dofs = [force.dof for force in self.model.force]
+        dofs = [dof for force in self.model.force for dof in _places(force, ("dof", "first", "second"))]
+        for part in self.model.rotor:
+            dofs += [*_places(part, ("first", "second")), *(getattr(part, "other", None) or ())]
         for spring in self.model.spring:
             ends = spring.dofs if hasattr(spring, "dofs") else (spring.first, spring.second)
             dofs += [end for end in ends if end is not None]
@@ -135,6 +142,11 @@ class StructureBuilder:
             ends = [end for end in (contact.first, contact.second) if end is not None]
             dofs += [f"{end}.{axis.removeprefix('-')}" for end in ends for axis in axes]
         return list(dict.fromkeys(dofs))
+
+
+def _places(part: Any, keys: tuple[str, ...]) -> list[str]:
+    """Degrees of freedom that a table names by some of these keys."""
+    return [dof for key in keys if (dof := getattr(part, key, None)) is not None]
 
 
 def _placed(where: str, function: Any, *arguments: Any) -> Any:

@@ -1,7 +1,7 @@
 """The tables of a study file that describe a structure and what acts on it."""
 
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -12,9 +12,10 @@ from dalembert.study.tables.data_table import DataFile
 from dalembert.study.tables.dataclass_tables import any_of, chosen, settings_of, table_of
 from dalembert.study.text.functions import FunctionName
 from dalembert.study.text.numbers import number
-from dalembert.study.text.table import Read, StudyTable, completed, problem
+from dalembert.study.text.table import Read, StudyTable, alternative, completed, problem
 
-PARTS = ("mass", "spring", "force", "contact")
+SYNCHRONOUS = "synchronous"
+PARTS = ("mass", "spring", "rotor", "force", "contact")
 
 
 class ReductionTable(StudyTable):
@@ -68,6 +69,11 @@ class StructureTable(StudyTable):
                 if getattr(self, key)
             ]
         return wrong
+
+
+def rotor_speed() -> Any:
+    """Type of the key of a rotor's speed: rad/s, or the word for that of the excitation."""
+    return alternative(lambda value: value == SYNCHRONOUS, Literal["synchronous"], number("rad/s"))
 
 
 @cache

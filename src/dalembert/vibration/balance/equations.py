@@ -19,12 +19,14 @@ from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import DENSE, Condensation, norm
 from dalembert.vibration.interface.contacts_stuck import ContactsStuck, KnownStructures
+from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.interface.modal_damping import couples
 from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
-from dalembert.vibration.system.system import StaticForce, VibrationSystem
+from dalembert.vibration.system.forces import StaticForce
+from dalembert.vibration.system.system import VibrationSystem
 
 SIZES = 10.0 ** np.arange(-9, 7, 3)
 """Sizes of the motions, m, at which laws are compared with their opposites."""
@@ -51,7 +53,7 @@ class Equations:
     @cached_property
     def condensation(self) -> Condensation:
         """The structure at any frequency, by dynamic stiffnesses."""
-        return Condensation(self.lowered.structure, self.lowered.coordinates, self.method.orders, self._loads)
+        return Condensation(self.lowered, self.method.orders, self._loads)
 
     @cached_property
     def contacts_stuck(self) -> ContactsStuck:
@@ -63,9 +65,9 @@ class Equations:
         return Fourier(self.method.orders, self.method.first_samples)
 
     @cached_property
-    def _loads(self) -> np.ndarray:
-        """Phasors of the forces, (orders, n)."""
-        return self._series.phasors(np.real(self.lowered.loads(self._series)))
+    def _loads(self) -> Loads:
+        """Forces in the kept harmonics."""
+        return self.lowered.loads(self._series)
 
     def at(self, omega: float) -> Point:
         """The structure at ω, rad/s."""
@@ -279,20 +281,25 @@ LARGE = 500
 def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) -> str:
     """Return the way in which the structure is written for a curve.
 
-    InputError where receptances are asked for and rigid contacts or ``stability`` need dynamic stiffnesses.
+    InputError where receptances are asked for and rigid contacts, rotors or ``stability`` need dynamic stiffnesses.
     """
-    rigid = [lowered.contacts[block.contacts[0]] for block in lowered.blocks if block.kind != ELASTIC]
-    if method.solver == RECEPTANCE and (rigid or stability):
-        cause = f"the contact {rigid[0]!r} is rigid" if rigid else "the stability of points was asked for"
+    causes = [
+        f"the contact {lowered.contacts[block.contacts[0]]!r} is rigid"
+        for block in lowered.blocks
+        if block.kind != ELASTIC
+    ]
+    causes += ["the structure has a rotor"] * lowered.structure.rotates
+    causes += ["the stability of points was asked for"] * stability
+    if method.solver == RECEPTANCE and causes:
         raise InputError(
-            f"HarmonicBalance: solver is 'receptance', but {cause}, which needs dynamic stiffnesses. "
+            f"HarmonicBalance: solver is 'receptance', but {causes[0]}, which needs dynamic stiffnesses. "
             "Use solver='stiffness'"
         )
     if method.solver != AUTO:
         return method.solver
     orders = method.first().orders
     rows = sum(len(np.unique(block.rows)) for block in lowered.blocks)
-    if rigid or stability or rows * (2 * len(orders) - (orders[0] == 0)) <= LARGE:
+    if causes or rows * (2 * len(orders) - (orders[0] == 0)) <= LARGE:
         return STIFFNESS
     # All modes of a small structure make receptances exact, at the cost of a matrix of them where damping couples them.
     if lowered.structure.size <= DENSE and couples(lowered.structure):

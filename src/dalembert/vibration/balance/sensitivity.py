@@ -2,9 +2,8 @@ r"""Exact derivatives of a balanced response by parameters.
 
 With :math:`R(U, p) = 0`, :math:`\mathrm{d}U/\mathrm{d}p = -J^{-1}\, \partial R/\partial p`. A system built with a
 parameter moved by a complex step carries the derivatives of its matrices, forces and laws in its imaginary parts. Those
-of the condensed structure follow without condensing it again: with V the motion of the whole structure under unit
-motions of the retained coordinates, and x that of the solution,
-:math:`\partial (Z_q U - F_q)/\partial p = V^T (Z' x - f')`.
+of the condensed structure follow without condensing it again: with x the motion of the whole structure,
+:math:`\partial (Z_q U - F_q)/\partial p = (1, -Z_{ql} Z_{ll}^{-1}) (Z' x - f')`.
 """
 
 from collections.abc import Sequence
@@ -13,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.structure.structure import ROTATING
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
@@ -39,10 +39,10 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
     inner_pushes, residuals = [], []
     for system in perturbed:
         # f' - Z' x of all degrees of freedom: what the parameter changes where the motion is held.
-        push = series.phasors(_step(system.loads(series))) - _unbalanced(system, point.frequencies, motion)
+        push = series.phasors(_step(system.load_coefficients(series, point.omega))) - _unbalanced(system, point, motion)
         outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
-        # V^T (f' - Z' x) with V = (1, -Y): the part at q less that at the interior, condensed as loads are.
-        condensed = outer - (np.swapaxes(point.follow, 1, 2) @ inner[:, :, None])[:, :, 0]
+        # The part at q less that at the interior, condensed as loads are.
+        condensed = outer - (point.passed @ inner[:, :, None])[:, :, 0]
         # The laws see the real motion and complex numbers; the linear part carries its derivative in its imaginary
         # part, so that rigid contacts, which see the residual, take both at once.
         elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
@@ -80,7 +80,7 @@ def _by_receptances(
     motion = series.phasors(point.motion(balance.deviation(point.omega, solution.unknowns)))
     pushes, forces, residuals = [], [], []
     for system in perturbed:
-        push = series.phasors(_step(system.loads(series))) - _unbalanced(system, point.frequencies, motion)
+        push = series.phasors(_step(system.load_coefficients(series, point.omega))) - _unbalanced(system, point, motion)
         elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
         acting, _ = replace(balance.elements, lowered=elements).forces(point.omega, solution.unknowns)
         pushes.append(series.coefficients(push))
@@ -96,13 +96,22 @@ def _by_receptances(
     )
 
 
-def _unbalanced(lowered: Lowered, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:
-    """Z' x, (orders, n), from the imaginary parts of the matrices."""
-    structure, s = lowered.structure, frequencies
-    matrices = structure.stiffness, structure.mass, structure.damping, structure.loss
-    factors = np.ones_like(s), -(s**2), 1j * s, 1j * np.sign(s)
-    pairs = zip(matrices, factors, strict=True)
-    return np.asarray(sum((_step(matrix) @ motion.T) * factor for matrix, factor in pairs if matrix is not None)).T
+def _unbalanced(lowered: Lowered, point: Any, motion: np.ndarray) -> np.ndarray:
+    """Z' x, (orders, n), from the imaginary parts of the matrices and of the speed of a rotor."""
+    structure, s = lowered.structure, point.frequencies
+    speed = lowered.spin(point.omega)[0]
+    factors = {
+        "stiffness": np.ones_like(s),
+        "mass": -(s**2),
+        "damping": 1j * s,
+        "loss": 1j * np.sign(s),
+        "circulatory": np.ones_like(s),
+        "gyroscopic": 1j * s,
+    }
+    matrices = {name: getattr(structure, name) for name in factors}
+    matrices |= {name: speed * matrices[name] for name in ROTATING if matrices[name] is not None}
+    parts = ((_step(matrix) @ motion.T) * factors[name] for name, matrix in matrices.items() if matrix is not None)
+    return np.asarray(sum(parts)).T
 
 
 def _step(array: Any) -> Any:

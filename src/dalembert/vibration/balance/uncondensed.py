@@ -40,13 +40,14 @@ class Local(NamedTuple):
 class Uncondensed:
     """A system in its retained and interior coordinates. ``lowered``: real. Rigid contacts of the velocity kind are
     taken as such of the displacement kind, which say the same of a solution and also of its mean; ``condensation``:
-    which splits the structure; ``events``: as :class:`Balance` takes it.
+    which splits the structure; ``events``: as :class:`Balance` takes it; ``speed``: of a rotor, rad/s.
     """
 
     lowered: Lowered
     condensation: Condensation
     series: Fourier
     events: bool = True
+    speed: float = 0.0
 
     def __post_init__(self) -> None:
         if not all(block.memory for block in self.lowered.blocks):
@@ -65,7 +66,7 @@ class Uncondensed:
 
     @cached_property
     def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """K, M and C in these coordinates, (n, n) each."""
+        """K + Ω N, M and C + Ω G in these coordinates, (n, n) each."""
         condensation = self.condensation
         require_viscous(self.lowered.structure, "stability and nonlinear modes")
         if any(map(issparse, condensation.inner)):
@@ -73,12 +74,18 @@ class Uncondensed:
                 f"stability and nonlinear modes take dense matrices of all {self.lowered.structure.size} degrees of "
                 "freedom; reduce the structure first (craig_bampton)"
             )
-        return tuple(
-            np.block([[outer, across], [across.T, np.diag(inner) if inner.ndim == 1 else inner]])
-            for outer, across, inner in zip(
-                condensation.outer[:3], condensation.across[:3], condensation.inner[:3], strict=True
+        stiffness, mass, damping, *more = (
+            np.block([[outer, across], [below, np.diag(inner) if inner.ndim == 1 else inner]])
+            for outer, across, below, inner in zip(
+                condensation.outer, condensation.across, condensation.below, condensation.inner, strict=True
             )
-        )  # type: ignore[return-value]
+        )
+        for name, matrix in zip(condensation.more, more, strict=True):
+            if name == "circulatory":
+                stiffness = stiffness + self.speed * matrix
+            elif name == "gyroscopic":
+                damping = damping + self.speed * matrix
+        return stiffness, mass, damping
 
     def elements(self, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> Local:
         """The elements where the linear part and the retained coordinates, (q, coefficients), are these."""

@@ -21,7 +21,8 @@ from dalembert.vibration.system.system import VibrationSystem
 
 NUMBERS = ("tangential stiffness", "normal stiffness", "gap", "friction", "preload")
 """Columns of the numbers of contacts."""
-_FIELDS = ("amplitude", "phase", "value")  # numbers of forces
+FORCES = ("amplitude", "phase", "value", "moment", "scale", "displacement", "acceleration")
+"""Numbers of forces."""
 Part = tuple[np.ndarray, Callable[[int], str]]
 """Numbers (count,), and what each of them is."""
 
@@ -90,9 +91,11 @@ def _parts(lowered: Lowered) -> Iterator[Part]:
         if matrix is not None:
             yield _entries(matrix), lambda entry, name=name, matrix=matrix: _entry(structure, name, matrix, entry)
     for force in lowered.forces:
-        names = [name for name in _FIELDS if hasattr(force, name)]
+        names = [name for name in FORCES if hasattr(force, name)]
         values = np.array([getattr(force, name) for name in names])
-        yield values, lambda entry, names=names, dof=force.dof: f"{names[entry]!r} of the force on {dof!r}"
+        yield values, lambda entry, names=names, where=force.where: f"{names[entry]!r} of {where}"
+    if not isinstance(lowered.speed, str):
+        yield np.array([lowered.speed]), lambda _: "the speed of the rotor"
     for block in lowered.blocks:
         names = [lowered.contacts[place] for place in block.contacts]
         yield (

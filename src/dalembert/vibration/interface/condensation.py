@@ -2,13 +2,13 @@ r"""Dynamic stiffness of a structure at the coordinates of its nonlinear element
 
 With q the retained and l the interior coordinates, for each harmonic at :math:`s = h\omega`, exactly,
 
-.. math:: Z(s) = K - s^2 M + i s C + i \,\mathrm{sign}(s) D, \qquad Z_q = Z_{qq} - Z_{ql} Z_{ll}^{-1} Z_{lq}, \qquad
-          F_q = f_q - Z_{ql} Z_{ll}^{-1} f_l,
+.. math:: Z(s) = K - s^2 M + i s C + i \,\mathrm{sign}(s) D + \Omega (N + i s G), \qquad
+          Z_q = Z_{qq} - Z_{ql} Z_{ll}^{-1} Z_{lq}, \qquad F_q = f_q - Z_{ql} Z_{ll}^{-1} f_l,
 
-with the loss matrix D of hysteretic damping, which does not act on the mean (s = 0); this
-is the inverse of the receptance :math:`S Z^{-1} S^T`, and is also there where that has none. The interior of a
-small structure is written in its modes with q held, so that :math:`Z_{ll}` is diagonal if the damping is; else it is
-factorised.
+with the loss matrix D of hysteretic damping, which does not act on the mean (s = 0), and the circulatory and the
+gyroscopic matrix N and G of a rotor with the speed Ω, with which Z is not symmetric. This is the inverse of the
+receptance :math:`S Z^{-1} S^T`, and is also there where that has none. The interior of a small structure is written in
+its modes with q held, so that :math:`Z_{ll}` is diagonal if the damping is; else it is factorised.
 """
 
 from dataclasses import dataclass, field, replace
@@ -21,10 +21,11 @@ from scipy.sparse import csc_array, diags_array, issparse
 from scipy.sparse.linalg import splu
 
 from dalembert.errors import ModelError, SolveError, listed
-from dalembert.structure import Structure
 from dalembert.structure.eigenmodes import real_part
-from dalembert.vibration.interface.coordinates import Coordinates
+from dalembert.structure.structure import ROTATING
 from dalembert.vibration.interface.free_motions import FLOATING, free_motions, moving_names
+from dalembert.vibration.interface.loads import Loads
+from dalembert.vibration.interface.lowering import Lowered
 
 DENSE = 1500
 """Size up to which a sparse interior is treated as a dense one."""
@@ -41,7 +42,8 @@ class CondensedStructure:
     """A condensed structure at one frequency, and the matrices that recover all coordinates. ``omega``: rad/s;
     ``frequencies`` (orders,): h ω, rad/s; ``stiffness``, ``slope`` (orders, q, q), complex: Z_q and its derivative by
     ω; ``force``, ``force_slope`` (orders, q), complex; ``follow`` (orders, l, q), complex: Z_ll⁻¹ Z_lq: the interior
-    follows q by the negative of it; ``free`` (orders, l), complex: Z_ll⁻¹ f_l: the interior with q held; ``kept``:
+    follows q by the negative of it; ``passed`` (orders, q, l), complex: Z_ql Z_ll⁻¹: the negative of it passes forces
+    on the interior to q; ``free`` (orders, l), complex: Z_ll⁻¹ f_l: the interior with q held; ``kept``:
     factors that serve all iterations here; ``shared``: what all frequencies have in common; ``rate``: derivative of ω
     by what ``slope`` and ``force_slope`` are derivatives by: 1, unless that is not ω.
     """
@@ -53,6 +55,7 @@ class CondensedStructure:
     force: np.ndarray
     force_slope: np.ndarray
     follow: np.ndarray
+    passed: np.ndarray
     free: np.ndarray
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
     shared: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
@@ -74,7 +77,9 @@ class CondensedStructure:
         if "free motions" not in self.shared:
             motions = np.zeros((self.stiffness.shape[1], 0))
             if len(self.frequencies) and self.frequencies[0] == 0 and len(motions):
-                values, vectors = np.linalg.eigh(np.real(self.stiffness[0]))
+                # Along a motion that the symmetric part does not resist no force does work.
+                stiffness = np.real(self.stiffness[0])
+                values, vectors = np.linalg.eigh((stiffness + stiffness.T) / 2)
                 motions = vectors[:, values <= FLOATING * self.stiffest]
             self.shared["free motions"] = motions
         return self.shared["free motions"]
@@ -113,18 +118,18 @@ class CondensedStructure:
 class Condensation:
     """A structure ready to be condensed at any frequency.
 
-    ``loads`` (orders, n), complex: phasors of the forces.
+    ``loads``: forces with these harmonics.
     """
 
-    def __init__(
-        self, structure: Structure, coordinates: Coordinates, orders: tuple[int, ...], loads: np.ndarray
-    ) -> None:
-        self.orders = np.array(orders, dtype=float)
+    def __init__(self, lowered: Lowered, orders: tuple[int, ...], loads: Loads) -> None:
+        structure, coordinates = lowered.structure, lowered.coordinates
+        self.orders, self._spin = np.array(orders, dtype=float), lowered.spin
         size: int = structure.size
         matrices = [real_part(structure.stiffness), real_part(structure.mass)]
         matrices.append(matrices[0] * 0.0 if structure.damping is None else real_part(structure.damping))
-        if structure.loss is not None:
-            matrices.append(real_part(structure.loss))
+        # Those beyond stiffness, mass and damping that the structure has.
+        self.more = [name for name in ("loss", *ROTATING) if getattr(structure, name) is not None]
+        matrices += [real_part(getattr(structure, name)) for name in self.more]
         retained, interior = coordinates.retained, coordinates.interior
         dense = size <= DENSE or not issparse(structure.stiffness)
         self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
@@ -134,44 +139,71 @@ class Condensation:
             inner = self._modal(inner)
         self.inner: list[Any] = [block if dense else csc_array(block) for block in inner]
         self.outer = [np.asarray(self.retained.T @ (matrix @ self.retained)) for matrix in matrices]
-        self.across = [np.asarray(self.back.T @ (matrix @ self.retained)).T for matrix in matrices]
-        self.loads, self.names = loads, structure.dofs.names
-        self.outer_loads, self.inner_loads = loads @ self.retained, np.asarray((self.back.T @ loads.T).T)
+        self.below = [np.asarray(self.back.T @ (matrix @ self.retained)) for matrix in matrices]
+        self.across = [matrix.T for matrix in self.below]
+        self._symmetric = not structure.rotates
+        if not self._symmetric:
+            self.across = [np.asarray(self.back.T @ (matrix.T @ self.retained)).T for matrix in matrices]
+        self._loads, self.names = loads, structure.dofs.names
+        self._outer_loads = loads.patterns @ self.retained
+        self._inner_loads = np.stack([np.asarray((self.back.T @ pattern.T).T) for pattern in loads.patterns])
         self._shared: dict[str, np.ndarray] = {}
         self.free, self._pins = np.zeros((size, 0)), np.zeros(0, dtype=int)
-        if self.orders[0] == 0 and self.inner_loads.shape[1]:
+        if self.orders[0] == 0 and self._inner_loads.shape[2]:
             self._set_free(free_motions(self.inner[0]))
 
     def at(self, omega: float) -> CondensedStructure:
         """The condensed structure at ω, rad/s."""
-        s = self.orders * omega
-        (outer, across, *inner), (outer_slope, across_slope, *inner_slope) = self._together(s)
-        if not self.inner_loads.shape[1]:
-            nothing = self.inner_loads
+        s, spin = self.orders * omega, self._spin(omega)
+        (outer, across, below, *inner), (outer_slope, across_slope, below_slope, *inner_slope) = self._together(s, spin)
+        (outer_loads, inner_loads), (outer_loads_slope, inner_loads_slope) = self._loads_at(omega)
+        if not inner_loads.shape[1]:
             return CondensedStructure(
-                omega, s, outer, outer_slope, self.outer_loads, 0 * self.outer_loads, np.swapaxes(across, 1, 2),
-                nothing, shared=self._shared,
+                omega, s, outer, outer_slope, outer_loads, outer_loads_slope, below, across, inner_loads,
+                shared=self._shared,
             )  # fmt: skip
         inner = inner[0] if inner else self._inner(s)
-        right = np.concatenate([np.swapaxes(across, 1, 2), self.inner_loads[:, :, None]], axis=2)
-        solved = self.solve(s, right, self._off_resonance(s, inner, right))
-        # With Y = Z_ll⁻¹ Z_lq (follow): Z_q = Z_qq - Z_ql Y, F_q = f_q - Yᵀ f_l, and for the derivatives by ω
-        # Z_q' = Z_qq' - Z_ql' Y - Yᵀ Z_lq' + Yᵀ Z_ll' Y, F_q' = -Z_ql' Z_ll⁻¹ f_l + Yᵀ Z_ll' Z_ll⁻¹ f_l.
+        right = np.concatenate([below, inner_loads[:, :, None]], axis=2)
+        inner = self._off_resonance(s, inner, right)
+        solved = self.solve(s, right, inner)
+        # With Y = Z_ll⁻¹ Z_lq (follow) and X = Z_ql Z_ll⁻¹ (passed), which is Yᵀ of a symmetric structure:
+        # Z_q = Z_qq - Z_ql Y, F_q = f_q - X f_l, and for the derivatives by ω
+        # Z_q' = Z_qq' - Z_ql' Y - X Z_lq' + X Z_ll' Y, F_q' = f_q' - X f_l' - Z_ql' Z_ll⁻¹ f_l + X Z_ll' Z_ll⁻¹ f_l.
         follow, free = solved[:, :, :-1], solved[:, :, -1]
-        turned = np.swapaxes(follow, 1, 2)
-        moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved)
+        passed = np.swapaxes(follow if self._symmetric else self._transposed(s, across, inner), 1, 2)
+        moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved, spin)
         crossed = across_slope @ solved
+        force_slope = (passed @ moved[:, :, -1:])[:, :, 0] - crossed[:, :, -1]
+        if self._loads.factors:
+            force_slope += outer_loads_slope - (passed @ inner_loads_slope[:, :, None])[:, :, 0]
+        turned = np.swapaxes(crossed[:, :, :-1], 1, 2) if self._symmetric else passed @ below_slope
         return CondensedStructure(
             omega=omega,
             frequencies=s,
             stiffness=outer - across @ follow,
-            slope=outer_slope - crossed[:, :, :-1] - np.swapaxes(crossed[:, :, :-1], 1, 2) + turned @ moved[:, :, :-1],
-            force=self.outer_loads - (turned @ self.inner_loads[:, :, None])[:, :, 0],
-            force_slope=-crossed[:, :, -1] + (turned @ moved[:, :, -1:])[:, :, 0],
+            slope=outer_slope - crossed[:, :, :-1] - turned + passed @ moved[:, :, :-1],
+            force=outer_loads - (passed @ inner_loads[:, :, None])[:, :, 0],
+            force_slope=force_slope,
             follow=follow,
+            passed=passed,
             free=free,
             shared=self._shared,
         )
+
+    def _loads_at(self, omega: float) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        """Forces on the retained and the interior coordinates, and their derivatives by ω, (orders, -) each."""
+        outer, inner = self._outer_loads, self._inner_loads
+        if not self._loads.factors:
+            return (outer[0], inner[0]), (0 * outer[0], 0 * inner[0])
+        first, second = (
+            (np.tensordot(weights, outer, 1), np.tensordot(weights, inner, 1)) for weights in self._loads.weights(omega)
+        )
+        return first, second
+
+    @property
+    def constant_loads(self) -> np.ndarray:
+        """Forces that do not depend on the frequency, on retained and interior coordinates, (orders, n)."""
+        return np.concatenate([self._outer_loads[0], self._inner_loads[0]], axis=1)
 
     def full(self, retained: np.ndarray, interior: np.ndarray) -> np.ndarray:
         """Return all degrees of freedom (orders, n) from the retained and the interior ones. If nothing holds the
@@ -202,7 +234,7 @@ class Condensation:
             )
         # An orthonormal basis, so that `full` removes exactly the part along free motions.
         self.free = np.linalg.qr(moved)[0]
-        static = np.real(self.loads[0])
+        static = np.real(self._loads.constant[0])
         force = float(np.linalg.norm(self.free.T @ static))
         if force > DECOUPLED * np.linalg.norm(static):
             raise ModelError(
@@ -239,6 +271,14 @@ class Condensation:
         except (RuntimeError, np.linalg.LinAlgError):
             raise _resonance(s, "") from None
 
+    def _transposed(self, s: np.ndarray, across: np.ndarray, inner: Any) -> np.ndarray:
+        """Z_ll⁻ᵀ Z_qlᵀ, (orders, l, q)."""
+        if isinstance(inner, list):
+            turned: Any = [csc_array(matrix.T) for matrix in inner]
+        else:
+            turned = inner if inner.ndim == 2 else np.swapaxes(inner, 1, 2)
+        return self.solve(s, np.swapaxes(across, 1, 2), turned)
+
     @cached_property
     def _resonant(self) -> np.ndarray:
         """Dynamic stiffness of each interior mode (l,) that is rounding of its stiffness and inertia."""
@@ -269,9 +309,9 @@ class Condensation:
 
     def interior_slope(self, point: CondensedStructure, retained: np.ndarray) -> np.ndarray:
         """Derivative of the interior coordinates by ω where the retained ones (orders, q) are held, (orders, l)."""
-        s, interior = point.frequencies, point.interior(retained)
-        across = np.swapaxes(self._slope(self.across, s), 1, 2) @ retained[:, :, None]
-        return -self.solve(s, self._inner_slope(s, interior[:, :, None]) + across)[:, :, 0]
+        s, interior, spin = point.frequencies, point.interior(retained), self._spin(point.omega)
+        pushed = self._loads_at(point.omega)[1][1][:, :, None] - self._slope(self.below, s, spin) @ retained[:, :, None]
+        return self.solve(s, pushed - self._inner_slope(s, interior[:, :, None], spin))[:, :, 0]
 
     def _modal(self, blocks: list[np.ndarray]) -> list[np.ndarray]:
         """Interior matrices in modes with q held: vectors where they are diagonal. Without modes, as they are."""
@@ -287,38 +327,68 @@ class Condensation:
         return [squares, np.ones_like(squares), *map(np.diag, modal)]
 
     def _inner(self, s: np.ndarray) -> Any:
+        speed = self._spin(float(s[-1] / self.orders[-1]))[0]
         if issparse(self.inner[0]):
-            return [csc_array(_dynamic(self.inner, x)) for x in s]
-        return _dynamic(self.inner, s)
+            return [csc_array(self._dynamic(self.inner, x, speed)) for x in s]
+        return self._dynamic(self.inner, s, speed)
 
-    def _slope(self, blocks: list[np.ndarray], s: np.ndarray) -> np.ndarray:
-        """Derivative of K - s²M + i s C by ω."""
-        _, mass, damping = blocks[:3]
-        factor = self.orders.reshape(-1, *[1] * mass.ndim)
-        return factor * (1j * damping - 2 * s.reshape(factor.shape) * mass)
+    def _dynamic(self, blocks: list[Any], s: Any, speed: float) -> Any:
+        """Z at frequencies (orders,), or at one."""
+        stiffness, mass, damping, *more = blocks
+        if np.ndim(s):
+            s = s.reshape(-1, *[1] * mass.ndim)
+        result = stiffness - s**2 * mass + 1j * s * damping
+        factors = {"loss": 1j * np.sign(s), "circulatory": speed, "gyroscopic": 1j * s * speed}
+        for name, matrix in zip(self.more, more, strict=True):
+            result = result + factors[name] * matrix
+        return result
 
-    def _inner_slope(self, s: np.ndarray, solved: np.ndarray) -> np.ndarray:
+    def _slope(self, blocks: list[Any], s: np.ndarray, spin: tuple[float, float]) -> Any:
+        """Derivative of :meth:`_dynamic` by ω. ``spin``: speed of the rotor, and its derivative by ω."""
+        _, mass, damping, *more = blocks
+        orders, (speed, rate) = self.orders.reshape(-1, *[1] * mass.ndim), spin
+        s = s.reshape(orders.shape)
+        result = orders * (1j * damping - 2 * s * mass)
+        factors = {"circulatory": rate, "gyroscopic": 1j * (orders * speed + s * rate)}
+        for name, matrix in zip(self.more, more, strict=True):
+            if name in factors:
+                result = result + factors[name] * matrix
+        return result
+
+    def _inner_slope(self, s: np.ndarray, solved: np.ndarray, spin: tuple[float, float]) -> np.ndarray:
         """Derivative of Z_ll by ω, times columns (orders, l, columns)."""
-        _, mass, damping = self.inner[:3]
-        if issparse(mass):
-            return np.stack(
-                [h * (1j * (damping @ x) - 2 * w * (mass @ x)) for h, w, x in zip(self.orders, s, solved, strict=True)]
-            )
-        return _times(self._slope(self.inner, s), solved)
+        if not issparse(self.inner[1]):
+            return _times(self._slope(self.inner, s, spin), solved)
+        _, mass, damping, *more = self.inner
+        result = []
+        for h, w, x in zip(self.orders, s, solved, strict=True):
+            column = h * (1j * (damping @ x) - 2 * w * (mass @ x))
+            factors = {"circulatory": spin[1], "gyroscopic": 1j * (h * spin[0] + w * spin[1])}
+            for name, matrix in zip(self.more, more, strict=True):
+                if name in factors:
+                    column += factors[name] * (matrix @ x)
+            result.append(column)
+        return np.stack(result)
 
     @cached_property
     def _side_by_side(self) -> tuple[list[np.ndarray], list[tuple[slice, tuple[int, ...]]]]:
         """Entries of the matrices that are not sparse in one vector, and the slice and shape of each."""
-        parts = [part for part in (self.outer, self.across, self.inner) if not issparse(part[0])]
+        parts = [self.outer, self.across, *([] if self._symmetric else [self.below])]
+        parts += [] if issparse(self.inner[0]) else [self.inner]
         ends = np.cumsum([part[0].size for part in parts]).tolist()
         places = [(slice(end - part[0].size, end), part[0].shape) for part, end in zip(parts, ends, strict=True)]
         return [np.concatenate([matrix.ravel() for matrix in kind]) for kind in zip(*parts, strict=True)], places
 
-    def _together(self, s: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """Dynamic stiffness of the matrices that are not sparse, and its derivative by ω: outer, across, inner."""
+    def _together(self, s: np.ndarray, spin: tuple[float, float]) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Dynamic stiffness of the matrices that are not sparse, and its derivative by ω: outer, across, below,
+        inner.
+        """
         entries, places = self._side_by_side
-        both = _dynamic(entries, s), self._slope(entries, s)
+        both = self._dynamic(entries, s, spin[0]), self._slope(entries, s, spin)
         first, second = ([flat[:, span].reshape(len(s), *shape) for span, shape in places] for flat in both)
+        if self._symmetric:
+            for blocks in (first, second):
+                blocks.insert(2, np.swapaxes(blocks[1], 1, 2))
         return first, second
 
 
@@ -337,15 +407,6 @@ def norm(array: np.ndarray) -> float:
 def _times(inner: np.ndarray, columns: np.ndarray) -> np.ndarray:
     """Matrices (orders, l, l), or their diagonals (orders, l), times columns (orders, l, columns)."""
     return inner[:, :, None] * columns if inner.ndim == 2 else inner @ columns
-
-
-def _dynamic(blocks: list[Any], s: Any) -> Any:
-    """Z at frequencies (orders,), or at one."""
-    stiffness, mass, damping, *loss = blocks
-    if np.ndim(s):
-        s = s.reshape(-1, *[1] * mass.ndim)
-    result = stiffness - s**2 * mass + 1j * s * damping
-    return result + 1j * np.sign(s) * loss[0] if loss else result
 
 
 def _resonance(s: np.ndarray, where: str) -> SolveError:

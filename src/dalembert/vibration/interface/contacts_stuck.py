@@ -9,11 +9,12 @@ from scipy.sparse import issparse
 
 from dalembert.errors import SolveError
 from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties
 from dalembert.vibration.interface.receptances import Receptances
 from dalembert.vibration.interface.stuck_structure import StuckStructure, held, stuck_structure
 from dalembert.vibration.laws.friction_law import GAP, LOAD, NORMAL
-from dalembert.vibration.system.system import StaticForce
+from dalembert.vibration.system.forces import StaticForce
 
 ROUNDS = 12
 """Solutions of the static contact, at most. With any reference the equations are correct."""
@@ -74,8 +75,8 @@ class ContactsStuck:
                 force[lowered.structure.dofs.index(entry.dof)] += np.real(entry.value)
         return force
 
-    def receptances(self, series: Fourier, loads: np.ndarray, omega: float) -> Receptances:
-        """Receptances at ω, and near it, with the harmonics of a series. ``loads`` (orders, n): their phasors."""
+    def receptances(self, series: Fourier, loads: Loads, omega: float) -> Receptances:
+        """Receptances at ω, and near it, with the harmonics of a series. ``loads``: forces in these."""
         highest, lowered, known = max(series.orders) * max(omega, self.highest), self.lowered, self.known
         if self._structure is None and known.key == self._key:
             self._structure = known.structure

@@ -10,15 +10,18 @@ from scipy.sparse import csc_array
 
 from dalembert.errors import InputError, ModelError
 from dalembert.structure import Structure
+from dalembert.structure.structure import MATRICES
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.coordinates import Coordinates, coordinates
+from dalembert.vibration.interface.loads import Loads, load_coefficients, loads
 from dalembert.vibration.laws.contacts import ElasticSlider, FrictionContact, Rigid
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL, sliding
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.user_element import UserElement
 from dalembert.vibration.laws.user_law import UserLaw
-from dalembert.vibration.system.system import HarmonicForce, StaticForce, VibrationSystem
+from dalembert.vibration.system.forces import Force
+from dalembert.vibration.system.system import SYNCHRONOUS, VibrationSystem
 
 ELASTIC = "elastic"
 
@@ -67,17 +70,18 @@ def law_numbers(block: FrictionBlock) -> np.ndarray:
 class Lowered:
     """A vibrating system as arrays. ``row_names``: names of the coordinates that elements see, such as ``"foot.x"``;
     ``matrix`` (rows, n); ``contacts``: names of the friction contacts; ``functions``: rows of each element whose law is
-    a function of arrays.
+    a function of arrays; ``speed``: of the rotor parts, rad/s, or "synchronous".
     """
 
     structure: Structure
-    forces: tuple[HarmonicForce | StaticForce, ...]
+    forces: tuple[Force, ...]
     row_names: tuple[str, ...]
     matrix: csc_array
     contacts: tuple[str, ...]
     blocks: tuple[FrictionBlock, ...]
     laws: tuple[LawBlock, ...]
     functions: tuple[tuple[np.ndarray, UserElement], ...]
+    speed: complex | str = 0.0
 
     @cached_property
     def coordinates(self) -> Coordinates:
@@ -93,38 +97,32 @@ class Lowered:
                 )
         return result
 
-    def loads(self, series: Fourier) -> np.ndarray:
-        """Coefficients of the forces on all degrees of freedom, (n, coefficients)."""
-        values = [value for force in self.forces for value in vars(force).values() if not isinstance(value, str)]
-        result = np.zeros((self.structure.size, series.count), dtype=np.result_type(float, *values))
-        for force in self.forces:
-            order = 0 if isinstance(force, StaticForce) else force.harmonic
-            if order not in series.orders:
-                raise InputError(
-                    f"the force on {force.dof!r} acts in harmonic {order}, which is not among the harmonics kept "
-                    f"({', '.join(map(str, series.orders))}); keep more of them"
-                )
-            row, place = self.structure.dofs.index(force.dof), series.cosines[series.orders.index(order)]
-            if isinstance(force, StaticForce):
-                result[row, place] += force.value
-            else:
-                # a cos(hτ + φ) = a cos φ cos hτ - a sin φ sin hτ
-                result[row, place] += force.amplitude * np.cos(force.phase)
-                result[row, place + 1] -= force.amplitude * np.sin(force.phase)
-        return result
+    def loads(self, series: Fourier) -> Loads:
+        """Forces over the excitation frequency, real."""
+        return loads(self.forces, self.structure, series)
+
+    def load_coefficients(self, series: Fourier, omega: float) -> np.ndarray:
+        """Coefficients of the forces on all degrees of freedom at ω, (n, coefficients)."""
+        return load_coefficients(self.forces, self.structure, series, omega)
+
+    def spin(self, omega: float) -> tuple[Any, float]:
+        """Speed of the rotor at an excitation frequency, both in rad/s, and its derivative by that."""
+        return (omega, 1.0) if self.speed == SYNCHRONOUS else (self.speed, 0.0)
 
     @property
     def real(self) -> "Lowered":
         """The same without the parts that are directions of derivatives."""
-        return replace(self, blocks=tuple(map(_real, self.blocks)), laws=tuple(map(_real, self.laws)))
+        speed = self.speed if isinstance(self.speed, str) else float(np.real(self.speed))
+        return replace(self, blocks=tuple(map(_real, self.blocks)), laws=tuple(map(_real, self.laws)), speed=speed)
 
     def fingerprint(self, method: object, *more: object) -> str:
         """Hash of a system's matrices, forces and elements, of the method, and of what else there is."""
         structure = self.structure
         digest = hashlib.sha256(repr((*more, method)).encode())
-        digest.update(repr((structure.dofs.names, self.row_names, self.contacts, self.forces)).encode())
-        optional = [matrix for matrix in (structure.damping, structure.loss) if matrix is not None]
-        for matrix in (structure.mass, structure.stiffness, *optional, self.matrix):
+        names = structure.dofs.names, self.row_names, self.contacts
+        digest.update(repr((*names, self.forces, self.speed)).encode())
+        matrices = [matrix for name in MATRICES if (matrix := getattr(structure, name)) is not None]
+        for matrix in (*matrices, self.matrix):
             digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, structure.size)).tobytes())
         for block in self.blocks:
             digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())
@@ -163,8 +161,8 @@ def lower(system: VibrationSystem) -> Lowered:
             ]
             key = type(element), element.law, element.events, element.states, len(element_rows), tuple(element.numbers)
             laws.setdefault(key, []).append((element, element_rows))
-    for force in system.forces:
-        system.structure.dofs.index(force.dof, "a force")
+    for dof in (dof for force in system.forces for dof in force.dofs):
+        system.structure.dofs.index(dof, "a force")
     blocks = tuple(
         FrictionBlock(*key, *(np.array(column) for column in zip(*entries, strict=True)))
         for key, entries in cells.items()
@@ -178,7 +176,7 @@ def lower(system: VibrationSystem) -> Lowered:
     )  # fmt: skip
     return Lowered(
         system.structure, tuple(system.forces), tuple(rows.names), rows.matrix(), tuple(names), blocks, ruled,
-        tuple(functions),
+        tuple(functions), system.speed,
     )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from dalembert.errors import SolveError
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import NEARLY, norm
 from dalembert.vibration.interface.free_motions import FLOATING
+from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.stuck_structure import StuckStructure
 
 FULL = 0.5
@@ -145,27 +146,34 @@ MANY = 8
 
 @dataclass(frozen=True)
 class Receptances:
-    """A structure whose contacts stick, with the harmonics of a series. ``loads`` (orders, n): phasors."""
+    """A structure whose contacts stick, with the harmonics of a series. ``loads``: forces in these harmonics."""
 
     stuck: StuckStructure
     series: Fourier
-    loads: np.ndarray
+    loads: Loads
 
     def at(self, omega: float) -> ReceptancePoint:
         """The receptances at ω, rad/s."""
         s = np.array(self.series.orders, dtype=float) * omega
         gains, slopes, still = self._gains(s)
-        static, modal = self._loaded
+        weights, weight_slopes = self.loads.weights(omega)
+        (static, modal), (static_slope, modal_slope) = (
+            [np.tensordot(factors, parts, 1) for parts in self._loaded] for factors in (weights, weight_slopes)
+        )
         driven = np.abs(modal) > FLOATING * np.abs(modal).max(initial=0.0)
         shapes = self.stuck.row_shapes
 
-        def moved(gain: np.ndarray) -> np.ndarray:
+        def moved(gain: np.ndarray, modal: np.ndarray) -> np.ndarray:
             turned = gain * modal if gain.ndim == 2 else (gain @ modal[:, :, None])[:, :, 0]
             return shapes @ self.series.coefficients(turned)
 
+        slope = moved(slopes, modal)
+        if self.loads.factors:
+            slope += static_slope + moved(gains, modal_slope)
         return ReceptancePoint(
-            self.stuck, self.series, omega, s, gains, slopes, static + moved(gains), moved(slopes), self.loads,
-            resonates=bool(np.any(still & driven)), kept=self._kept,
+            self.stuck, self.series, omega, s, gains, slopes, static + moved(gains, modal), slope,
+            self.loads.at(omega), resonates=bool(np.any(still & driven)),
+            kept={} if self.loads.factors else self._kept,
         )  # fmt: skip
 
     @cached_property
@@ -174,11 +182,16 @@ class Receptances:
 
     @cached_property
     def _loaded(self) -> tuple[np.ndarray, np.ndarray]:
-        """Static displacements of the rows under the loads (rows, coefficients), and modal loads (orders, modes)."""
-        loads = self.series.coefficients(self.loads)
-        static, pushed = np.zeros((len(self.stuck.reference), loads.shape[1])), np.any(loads, axis=0)
-        static[:, pushed] = self.stuck.rows @ self.stuck.solve(loads[:, pushed])
-        return static, self.loads @ self.stuck.shapes
+        """Static displacements of the rows (patterns, rows, coefficients) under each pattern of the loads, and modal
+        loads (patterns, orders, modes).
+        """
+        patterns = self.loads.patterns
+        static = np.zeros((len(patterns), len(self.stuck.reference), self.series.count))
+        for pattern, result in zip(patterns, static, strict=True):
+            loads = self.series.coefficients(pattern)
+            pushed = np.any(loads, axis=0)
+            result[:, pushed] = self.stuck.rows @ self.stuck.solve(loads[:, pushed])
+        return static, patterns @ self.stuck.shapes
 
     def _gains(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """1/q - 1 with q = 1 - s²μ + i s c + i sign(s) d, its derivative by ω, and whether a mode has q = 0."""

@@ -149,9 +149,7 @@ class ModeEquations:
     @cached_property
     def static(self) -> np.ndarray:
         """Static forces on the coordinates, (n, coefficients)."""
-        condensation = self.problem.condensation
-        loads = np.concatenate([condensation.outer_loads, condensation.inner_loads], axis=1)
-        return Fourier(self.problem.method.orders, 1).coefficients(loads)
+        return Fourier(self.problem.method.orders, 1).coefficients(self.problem.condensation.constant_loads)
 
     def linear(self, mode: int) -> Linear:
         """A linear mode about the position in which the static forces hold the system."""

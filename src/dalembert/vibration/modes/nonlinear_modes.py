@@ -33,8 +33,9 @@ from dalembert.vibration.modes.mode_paths import (
 )
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.requirements import positive_numbers
-from dalembert.vibration.system.system import StaticForce, VibrationSystem
+from dalembert.vibration.system.forces import StaticForce
+from dalembert.vibration.system.requirements import positive_numbers, require_still
+from dalembert.vibration.system.system import VibrationSystem
 
 WEAK = 1e-3
 """Damping ratio below which its errors are parts of this ratio, not of the smaller one."""
@@ -105,6 +106,7 @@ def backbone(
     >>> (2 * np.pi * curve.frequencies).round(3).tolist(), curve.damping.round(3).tolist()
     ([1.342, 1.028, 1.0], [0.0, 0.053, 0.001])
     """
+    require_still(system, "backbone")
     method = by_stiffness(method or HarmonicBalance(), "backbone")
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     posed = _PosedBackbone(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)

@@ -55,7 +55,7 @@ def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
         return np.array(structure.rows(names), dtype=int)
     if structure.size <= ALL:
         return np.arange(structure.size)
-    forced = [structure.dofs.index(force.dof) for force in lowered.forces]
+    forced = [structure.dofs.index(dof) for force in lowered.forces for dof in force.dofs]
     return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
 
 

@@ -32,7 +32,7 @@ from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import response_of, restarted
 from dalembert.vibration.responses.frequency_response import frequency_response
-from dalembert.vibration.system.requirements import positive_numbers
+from dalembert.vibration.system.requirements import positive_numbers, require_forces
 from dalembert.vibration.system.system import VibrationSystem
 
 
@@ -239,6 +239,7 @@ class FrequencyResponse:
         return model
 
     def _equations(self, system: VibrationSystem, derivatives: bool = False) -> Equations:
+        require_forces(system.forces, self.frequencies, "FrequencyResponse")
         highest = 2 * np.pi * float(np.max(self.frequencies))
         return equations(system, self.balance, derivatives=derivatives, highest=highest, known=self._known)
 

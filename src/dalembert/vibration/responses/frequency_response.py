@@ -36,7 +36,7 @@ from dalembert.vibration.paths.curve_points import observed, response_of, restar
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.requirements import positive_numbers, require_force, require_viscous
+from dalembert.vibration.system.requirements import positive_numbers, require_forces, require_viscous
 from dalembert.vibration.system.system import VibrationSystem
 
 NATURAL, ARC_LENGTH = "natural", "arc-length"
@@ -149,8 +149,9 @@ def frequency_response(
     [3.625]
     """
     is_path = isinstance(frequencies, tuple)
-    require_force(system.forces, "frequency_response")
-    omegas = 2 * np.pi * positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
+    places = positive_numbers(frequencies, "frequency_response", "frequencies", "Hz")
+    require_forces(system.forces, places, "frequency_response")
+    omegas = 2 * np.pi * places
     require_known("continuation", continuation, (NATURAL, ARC_LENGTH), "frequency_response")
     if continuation == ARC_LENGTH and not is_path:
         raise InputError(

@@ -27,6 +27,7 @@ from dalembert.vibration.laws.friction_law import (
     TANGENTIAL,
 )
 from dalembert.vibration.storage import Over, VibrationResult, versions
+from dalembert.vibration.system.requirements import require_still
 from dalembert.vibration.system.system import VibrationSystem
 
 LISTED = 20
@@ -167,6 +168,7 @@ def static_contact(system: VibrationSystem) -> StaticContact:
     >>> round(joint.displacement("m.x"), 9)  # (40 - 25) / 1e3
     0.015
     """
+    require_still(system, "static_contact")
     lowered = lower(system).real
     rigid = [lowered.contacts[block.contacts[0]] for block in lowered.blocks if block.kind != ELASTIC]
     if rigid:

@@ -37,7 +37,8 @@ def hill(problem: Equations, solution: Solution) -> np.ndarray:
     every = Fourier(tuple(range(orders[-1] + 1)), solution.samples)
     balance, point = problem.stiffness_balance(solution.samples), solution.condensed
     linear = balance.linear(point.stiffness, point.force, solution.unknowns)
-    system = Uncondensed(problem.lowered, problem.condensation, every, problem.method.events)
+    speed = problem.lowered.spin(solution.omega)[0]
+    system = Uncondensed(problem.lowered, problem.condensation, every, problem.method.events, speed)
     # All harmonics up to the highest: disturbances of a symmetric motion need not be symmetric.
     linear, unknowns = (in_orders(part, orders, every.orders) for part in (linear, solution.unknowns))
     pencil = _pencil(system, linear, unknowns, solution.omega)

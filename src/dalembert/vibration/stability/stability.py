@@ -146,7 +146,8 @@ def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
     linear = problem.stiffness_balance(solution.samples).linear(point.stiffness, point.force, solution.unknowns)
     series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
     # The map goes from sample to sample, and so do the states that it takes from the elements.
-    system = Uncondensed(problem.lowered, problem.condensation, series, events=False)
+    speed = problem.lowered.spin(solution.omega)[0]
+    system = Uncondensed(problem.lowered, problem.condensation, series, events=False, speed=speed)
     # Exponents from multipliers: the logarithm by 2π, in parts of ω; forgotten states have multiplier zero and none.
     factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
     values = np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi)

@@ -1,10 +1,17 @@
 """Checks of systems, and of numbers that are given for them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from dalembert.argument_readers import numbers_of
 from dalembert.errors import InputError
 from dalembert.structure import Structure
+from dalembert.vibration.system.forces import Force, TabulatedForce
+from dalembert.vibration.system.system import VibrationSystem
+
+EDGE = 1e-9
+"""Distance of a frequency from the end of a table, as part of it, that is rounding."""
 
 
 def require_viscous(structure: Structure, what: str) -> None:
@@ -16,12 +23,29 @@ def require_viscous(structure: Structure, what: str) -> None:
         )
 
 
-def require_force(forces: list, where: str) -> None:
-    """Raise InputError for a system without forces."""
+def require_forces(forces: Sequence[Force], frequencies: np.ndarray, where: str) -> None:
+    """Raise InputError for a system without forces, and for frequencies, Hz, at which a force is not known."""
     if not forces:
         raise InputError(
             f"{where}: no force acts on the system, so that it stands still; add a HarmonicForce ('[[model.force]]'), "
             "or use backbone for motions without force"
+        )
+    first, last = float(np.min(frequencies)), float(np.max(frequencies))
+    for force in forces:
+        low, high = force.range if isinstance(force, TabulatedForce) else (0.0, np.inf)
+        if first < low * (1 - EDGE) or last > high * (1 + EDGE):
+            raise InputError(
+                f"{where}: the frequencies reach from {first:.6g} to {last:.6g} Hz, and the table of {force.where} "
+                f"from {low:.6g} to {high:.6g} Hz. Extend the table, or ask for frequencies inside it"
+            )
+
+
+def require_still(system: VibrationSystem, where: str) -> None:
+    """Raise InputError for a rotor that turns."""
+    if system.structure.rotates and system.speed:
+        raise InputError(
+            f"{where}: the structure has a rotor that turns, which only responses over frequency take. Leave out its "
+            "discs and rotating dampers, or use frequency_response"
         )
 
 

@@ -1,62 +1,22 @@
 """A structure with forces, contacts and springs."""
 
-from dataclasses import dataclass, field
 from typing import TypeVar
 
-from dalembert.arguments import Checked
+import numpy as np
+
+from dalembert.arguments import is_number
 from dalembert.errors import InputError, ModelError, shown
 from dalembert.notebook_display import Displayed
 from dalembert.structure import Structure
 from dalembert.vibration.laws.contacts import FrictionContact, Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.user_element import UserElement
-
-
-@dataclass(frozen=True)
-class HarmonicForce(Checked):
-    """Force amplitude · cos(harmonic · ω t + phase) on a degree of freedom.
-
-    Parameters
-    ----------
-    dof : str
-        Such as ``"A.x"``.
-    amplitude : float
-        N.
-    phase : float
-        rad.
-    harmonic : int
-    """
-
-    dof: str
-    amplitude: Number = field(metadata={"unit": "N"})
-    phase: Number = field(default=0.0, metadata={"unit": "rad"})
-    harmonic: int = 1
-
-    def __post_init__(self) -> None:
-        if self.harmonic < 1:
-            raise InputError(
-                f"force on {self.dof!r}: the harmonic is {self.harmonic}; expected 1 or more, and a StaticForce for a "
-                "force that does not change"
-            )
-
-
-@dataclass(frozen=True)
-class StaticForce(Checked):
-    """A constant force on a degree of freedom.
-
-    Parameters
-    ----------
-    dof : str
-    value : float
-        N.
-    """
-
-    dof: str
-    value: Number = field(metadata={"unit": "N"})
-
+from dalembert.vibration.system.forces import Force, Unbalance
 
 Element = FrictionContact | LawElement | UserElement
-Part = TypeVar("Part", bound=HarmonicForce | StaticForce | Element)
+Part = TypeVar("Part", bound=Force | Element)
+SYNCHRONOUS = "synchronous"
+"""Speed of a rotor that turns once in a period of the excitation."""
 
 
 class VibrationSystem(Displayed):
@@ -65,11 +25,13 @@ class VibrationSystem(Displayed):
     Parameters
     ----------
     structure : Structure
+    speed : float or "synchronous"
+        Of the rotor parts of the structure, rad/s: a constant one, or that of the excitation, Ω = ω.
 
     Raises
     ------
     InputError
-        For anything else than a structure.
+        For anything else than a structure, or a speed that is no number.
 
     Examples
     --------
@@ -81,24 +43,35 @@ class VibrationSystem(Displayed):
     ['damper']
     """
 
-    def __init__(self, structure: Structure) -> None:
+    def __init__(self, structure: Structure, speed: Number | str = 0.0) -> None:
         if not isinstance(structure, Structure):
             raise InputError(
                 f"VibrationSystem: structure is {shown(structure)}; expected a Structure, such as lumped(...) or "
                 "Structure(mass, stiffness, dofs)"
             )
+        if speed != SYNCHRONOUS and not is_number(speed):
+            raise InputError(
+                f"VibrationSystem: speed is {shown(speed)}; expected a number in rad/s, or {SYNCHRONOUS!r} for the "
+                "frequency of the excitation"
+            )
         self.structure = structure
-        self.forces: list[HarmonicForce | StaticForce] = []
+        self.speed = speed
+        self.forces: list[Force] = []
         self.elements: list[Element] = []
 
     @property
     def highest_harmonic(self) -> int:
         """Highest harmonic in which a force acts; 1 without harmonic forces."""
-        return max([1, *(force.harmonic for force in self.forces if isinstance(force, HarmonicForce))])
+        return max([1, *(force.harmonic for force in self.forces)])
 
     def add(self, part: Part) -> Part:
         """Add a force, a contact or a spring, and hand it back."""
-        if isinstance(part, HarmonicForce | StaticForce):
+        if isinstance(part, Force):
+            if isinstance(part, Unbalance) and self.speed != SYNCHRONOUS and np.real(self.speed):
+                raise InputError(
+                    f"{part.where} turns with the rotor, and the speed of the system is {self.speed:g} rad/s. Use "
+                    f"speed={SYNCHRONOUS!r}"
+                )
             self.forces.append(part)
         elif isinstance(part, Element):
             if part.name in (element.name for element in self.elements):

@@ -20,7 +20,6 @@ from dalembert.vibration.interface.condensation import DENSE, coupled
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered
 from dalembert.vibration.laws.friction_law import NORMAL, TANGENTIAL
 from dalembert.vibration.system.requirements import require_viscous
-from dalembert.vibration.system.system import StaticForce
 from dalembert.vibration.time.elements import Elements, Ruled
 from dalembert.vibration.time.steps import ModalStructure, Scheme
 
@@ -48,8 +47,9 @@ class Spectral:
         return np.where(heavy, force - damping - self.stiffness * place, 0.0) / np.where(heavy, self.mass, 1.0)
 
 
-def spectral(structure: Any, omega: float) -> Spectral:
+def spectral(lowered: Lowered, omega: float) -> Spectral:
     """Modes of a structure, normalised to 1 in mass and stiffness/ω²."""
+    structure, speed = lowered.structure, lowered.spin(omega)[0]
     if structure.size > DENSE:
         raise ModelError(
             f"the structure has {structure.size} degrees of freedom, too many to be integrated in time (at most "
@@ -68,6 +68,14 @@ def spectral(structure: Any, omega: float) -> Spectral:
             "the structure has degrees of freedom with neither mass nor stiffness, or with negative ones, and cannot "
             "be integrated in time; give them some mass or a spring"
         ) from None
+    circulatory = structure.circulatory
+    if circulatory is not None and speed and abs(circulatory).max() > 0:
+        raise ModelError(
+            "the structure has circulatory forces, such as those of damping that turns with a rotor, which motions in "
+            "time do not take here. Leave them out, or use frequency_response"
+        )
+    if structure.gyroscopic is not None:
+        damping = damping + speed * np.real(dense(structure.gyroscopic))
     # Damping that couples these modes is kept whole: nothing is approximated.
     modal = shapes.T @ damping @ shapes
     inertia, hold = (np.einsum("ij,ij->j", shapes, matrix @ shapes) for matrix in (mass, stiffness))
@@ -88,7 +96,7 @@ class ModalSystem:
     @cached_property
     def spectral(self) -> Spectral:
         """The structure's modes."""
-        return spectral(self.lowered.structure, self.omega)
+        return spectral(self.lowered, self.omega)
 
     @cached_property
     def places(self) -> np.ndarray:
@@ -106,12 +114,11 @@ class ModalSystem:
     @cached_property
     def forces(self) -> np.ndarray:
         """On the modes at the steps' ends, (steps, modes); those of the last end are those of the period's start."""
-        highest = max(
-            (0 if isinstance(force, StaticForce) else force.harmonic for force in self.lowered.forces), default=0
-        )
+        highest = max((force.harmonic for force in self.lowered.forces), default=0)
         series = Fourier(tuple(range(max(highest, 1) + 1)), self.steps)
         # Forces at the ends of steps: sample t + 1 in row t.
-        samples = series.synthesis @ (np.real(self.lowered.loads(series)).T @ self.spectral.shapes)
+        loads = np.real(self.lowered.load_coefficients(series, self.omega))
+        samples = series.synthesis @ (loads.T @ self.spectral.shapes)
         return np.ascontiguousarray(np.roll(samples, -1, axis=0))
 
     def arrays(self, scheme: Scheme) -> tuple[ModalStructure, Elements]:

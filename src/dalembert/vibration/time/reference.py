@@ -19,7 +19,7 @@ from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import observed, response_of, restarted
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.requirements import require_force
+from dalembert.vibration.system.requirements import require_forces
 from dalembert.vibration.system.system import VibrationSystem
 from dalembert.vibration.time.elements import Elements, Instant, Reaction, react, reaction, settle
 from dalembert.vibration.time.modal_system import ModalSystem, address
@@ -90,7 +90,7 @@ def steady_state(
     method = method or Newmark()
     if not (np.isfinite(frequency) and frequency > 0):
         raise InputError(f"steady_state: the frequency is {frequency}; expected a positive number in Hz")
-    require_force(system.forces, "steady_state")
+    require_forces(system.forces, np.array([frequency]), "steady_state")
     require_known("way", way, (LONG_RUN, SHOOTING), "steady_state")
     lowered = lower(system).real
     problem = ModalSystem(lowered, 2 * np.pi * frequency, method.steps_per_period, method.stand_in)

@@ -1,0 +1,201 @@
+"""Forces that depend on the frequency, base excitation, and rotors: slopes, derivatives, messages."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import dalembert as da
+from dalembert.errors import InputError
+from dalembert.structure import Dofs, Structure, craig_bampton, lumped
+from dalembert.vibration import HarmonicBalance, VibrationSystem, frequency_response
+from dalembert.vibration.balance.equations import equations
+from dalembert.vibration.system.system import Part
+from support import says
+
+METHOD = HarmonicBalance(3)
+
+
+def rotor(size: int = 6, seed: int = 0) -> Structure:
+    """A structure with random matrices, without any symmetry of its rotor parts."""
+    random = np.random.default_rng(seed)
+    full = random.normal(size=(4, size, size))
+    mass, stiffness, damping = (
+        scale * (part @ part.T / size + np.eye(size)) for scale, part in zip((1.0, 50.0, 0.2), full, strict=False)
+    )
+    names = tuple(f"n{k}.x" for k in range(size))
+    gyroscopic, circulatory = 0.02 * random.normal(size=(2, size, size))
+    return Structure(mass, stiffness, Dofs(names), damping, gyroscopic=gyroscopic, circulatory=circulatory)
+
+
+def loaded(structure: Structure, *parts: Part, speed: float | str = "synchronous") -> VibrationSystem:
+    system = VibrationSystem(structure, speed=speed)
+    for part in parts:
+        system.add(part)
+    return system
+
+
+def table(**options: float) -> da.TabulatedForce:
+    f = np.linspace(0.5, 3.0, 30)
+    return da.TabulatedForce("n1.x", f.tolist(), (1 + f**2).tolist(), (0.3 * f).tolist(), **options)
+
+
+EVERY = (
+    da.HarmonicForce("n0.x", 1.0),
+    da.Unbalance("n2.x", "n3.x", moment=0.1, phase=0.4),
+    table(),
+    da.BaseExcitation("x", displacement=0.05, phase=0.2),
+    da.BaseExcitation("x", acceleration=0.5, harmonic=2),
+)
+
+
+@pytest.mark.parametrize("speed", [0.0, 7.0, "synchronous"])
+@pytest.mark.parametrize("sparse", [False, True])
+def test_a_linear_system_answers_as_its_matrices_do(speed, sparse, monkeypatch):
+    structure = rotor()
+    if sparse:
+        from scipy.sparse import csc_array
+
+        monkeypatch.setattr("dalembert.vibration.interface.condensation.DENSE", 1)
+        parts = ("mass", "stiffness", "damping", "gyroscopic", "circulatory")
+        structure = replace(structure, **{name: csc_array(getattr(structure, name)) for name in parts})
+    parts = [part for part in EVERY if speed != 7.0 or not isinstance(part, da.Unbalance)]
+    system = loaded(structure, *parts, da.CubicSpring("c", "n4.x", stiffness=1e-9), speed=speed)
+    omega = 7.3
+    curve = frequency_response(system, np.array([omega]) / (2 * np.pi), METHOD)
+    dense = rotor()
+    spin = omega if speed == "synchronous" else speed
+    base = dense.mass.sum(axis=1)
+    f = omega / (2 * np.pi)
+    first = 0.05 * omega**2 * base * np.exp(0.2j)
+    first += np.eye(6)[0] + (speed != 7.0) * 0.1 * omega**2 * np.exp(0.4j) * (np.eye(6)[2] - 1j * np.eye(6)[3])
+    first += (1 + f**2) * np.exp(0.3j * f) * np.eye(6)[1]
+    for order, load in ((1, first), (2, -0.5 * base)):
+        s = order * omega
+        dynamic = dense.stiffness + spin * dense.circulatory - s**2 * dense.mass
+        dynamic = dynamic + 1j * s * (dense.damping + spin * dense.gyroscopic)
+        exact = np.linalg.solve(dynamic, load)
+        ours = curve.response[0, :, 2 * order - 1] - 1j * curve.response[0, :, 2 * order]
+        # The table is interpolated.
+        assert np.abs(ours - exact).max() < (2e-4 if order == 1 else 1e-7) * np.abs(exact).max()
+
+
+@pytest.mark.parametrize("solver", ["stiffness", "receptance"])
+@pytest.mark.parametrize("speed", [3.0, "synchronous"])
+def test_slopes_by_the_frequency_are_those_of_differences(speed, solver):
+    structure, parts = rotor(), list(EVERY)
+    if solver == "receptance":  # which takes no rotor
+        structure, speed = replace(structure, gyroscopic=None, circulatory=None), 0.0
+    if speed == 3.0:
+        parts = [part for part in parts if not isinstance(part, da.Unbalance)]
+    system = loaded(structure, *parts, da.CubicSpring("c", "n4.x", stiffness=30.0), speed=speed)
+    problem = equations(system, replace(METHOD, solver=solver))
+    omega, step = 8.0, 1e-5
+    unknowns = np.random.default_rng(1).normal(size=problem.balance(64).shape)
+
+    def residual(at: float) -> np.ndarray:
+        return problem.balance(64).at(problem.at(at), unknowns).residual  # pyright: ignore[reportArgumentType]
+
+    slope = problem.balance(64).linearised(problem.at(omega), unknowns)[1].slope  # pyright: ignore[reportArgumentType]
+    differences = (residual(omega + step) - residual(omega - step)) / (2 * step)
+    assert np.abs(slope - differences).max() < 1e-7 * np.abs(differences).max()
+
+
+def test_derivatives_by_the_parameters_of_a_rotor_and_its_forces():
+    def build(moment: float, base: float, scale: float, speed: float, inner: float, polar: float) -> VibrationSystem:
+        from dalembert.structure import Disc, RotatingDamper, with_rotors
+
+        structure = lumped({f"d.{axis}": 1.0 for axis in ("x", "y", "rx", "ry")}, [])
+        stiffness = np.diag([90.0, 80.0, 70.0, 60.0]) + np.kron(np.ones((2, 2)), 4 * np.eye(2))
+        structure = replace(structure, stiffness=stiffness, damping=0.02 * stiffness)
+        structure = with_rotors(structure, [Disc("d.rx", "d.ry", polar), RotatingDamper("d.x", "d.y", inner)])
+        system = VibrationSystem(structure, speed=speed)
+        system.add(da.TabulatedForce("d.y", [0.5, 1.0, 2.0], [1.0, 2.0, 1.5], [0.0, 0.2, 0.1], scale=scale))
+        system.add(da.BaseExcitation("x", displacement=base))
+        system.add(da.HarmonicForce("d.rx", moment))
+        system.add(da.CubicSpring("c", "d.x", stiffness=40.0))
+        return system
+
+    bounds = {
+        "moment": (1.0, 3.0), "base": (0.01, 0.03), "scale": (0.5, 1.5),
+        "speed": (2.0, 8.0), "inner": (0.05, 0.2), "polar": (0.2, 0.8),
+    }  # fmt: skip
+    model = da.FrequencyResponse(build, bounds, ["d.x rms", "d.ry rms"], np.array([0.8, 1.3]), METHOD)
+    vector = np.array([2.0, 0.02, 1.0, 5.0, 0.1, 0.4])
+    _, jacobian = model.linearise(vector)
+    for column, name in enumerate(bounds):
+        step = np.zeros_like(vector)
+        step[column] = 1e-6 * vector[column]
+        differences = (model.linearise(vector + step)[0] - model.linearise(vector - step)[0]) / (2 * step[column])
+        assert np.abs(jacobian[..., column] - differences).max() < 1e-6 * np.abs(differences).max(), name
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ((table(), da.CubicSpring("c", "n4.x", stiffness=1.0)), "frequency_response: the frequencies reach from 0.4 to 0.4 Hz, and the table of the force on 'n1.x' from 0.5 to 3 Hz. Extend the table, or ask for frequencies inside it"),
+        ((da.BaseExcitation("y", displacement=1.0),), "the base excitation along 'y': no degree of freedom moves along this axis"),
+        ((da.HarmonicForce("n0.x", 1.0, harmonic=9),), "the force on 'n0.x' acts in harmonic 9, which is not among the harmonics kept (0, 1, 2, 3); keep more of them"),
+    ],
+)  # fmt: skip
+def test_forces_that_do_not_fit(parts, message):
+    with pytest.raises(InputError, match=says(message)):
+        frequency_response(loaded(rotor(), *parts), np.array([0.4]), METHOD)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: da.Unbalance("a.x", "a.x", moment=1.0), "the unbalance at 'a.x': both directions are equal; expected two across the axis"),
+        (lambda: da.BaseExcitation("w", displacement=1.0), "BaseExcitation: direction is 'w'; expected one of x, y, z"),
+        (lambda: da.BaseExcitation("x"), "the base excitation along 'x' has no displacement and no acceleration; expected one of them"),
+        (lambda: da.BaseExcitation("x", 1.0, 2.0), "the base excitation along 'x' has both a displacement and an acceleration; expected one of them"),
+        (lambda: da.BaseExcitation("x", 1.0, harmonic=0), "the base excitation along 'x': the harmonic is 0; expected 1 or more, and a StaticForce for a force that does not change"),
+        (lambda: da.TabulatedForce("a.x", [1.0], [1.0]), "the force on 'a.x': the frequencies of the table are [1.0]; expected two or more, positive and ascending, in Hz"),
+        (lambda: da.TabulatedForce("a.x", [1.0, 1.0], [1.0, 2.0]), "the force on 'a.x': the frequencies of the table are [1.0, 1.0]; expected two or more, positive and ascending, in Hz"),
+        (lambda: da.TabulatedForce("a.x", [1.0, 2.0], [1.0]), "the force on 'a.x': the table has 2 frequencies and 1 amplitudes; expected as many"),
+        (lambda: da.TabulatedForce("a.x", [1.0, 2.0], [1.0, 2.0], [0.1]), "the force on 'a.x': the table has 2 frequencies and 1 phases; expected as many"),
+        (lambda: VibrationSystem(rotor(), speed="fast"), "VibrationSystem: speed is 'fast'; expected a number in rad/s, or 'synchronous' for the frequency of the excitation"),
+        (lambda: loaded(rotor(), da.Unbalance("n0.x", "n1.x", moment=1.0), speed=5.0), "the unbalance at 'n0.x' turns with the rotor, and the speed of the system is 5 rad/s. Use speed='synchronous'"),
+    ],
+)  # fmt: skip
+def test_messages_of_forces_and_speeds(make, message):
+    with pytest.raises(InputError, match=says(message)):
+        make()
+
+
+def test_a_rotor_that_turns_is_refused_where_it_has_no_meaning():
+    system = loaded(rotor(), da.HarmonicForce("n0.x", 1.0), da.CubicSpring("c", "n1.x", stiffness=1.0))
+    with pytest.raises(
+        InputError,
+        match=says(
+            "backbone: the structure has a rotor that turns, which only responses over frequency take. Leave out its discs and rotating dampers, or use frequency_response"
+        ),
+    ):
+        da.backbone(system, np.array([1.0]))
+    with pytest.raises(
+        InputError,
+        match=says(
+            "HarmonicBalance: solver is 'receptance', but the structure has a rotor, which needs dynamic stiffnesses. Use solver='stiffness'"
+        ),
+    ):
+        frequency_response(system, np.array([1.0]), HarmonicBalance(3, solver="receptance"))
+    with pytest.raises(
+        da.ModelError,
+        match=says(
+            "the structure has circulatory forces, such as those of damping that turns with a rotor, which motions in time do not take here. Leave them out, or use frequency_response"
+        ),
+    ):
+        da.steady_state(system, 1.0)
+
+
+def test_the_inertia_of_a_reduced_structure_along_an_axis_is_not_known():
+    chain = lumped({f"n{k}": 1.0 for k in range(5)}, [(f"n{k}", f"n{k + 1}", 1.0, 0.1) for k in range(4)])
+    reduced = craig_bampton(replace(chain, stiffness=chain.stiffness + np.eye(5)), ["n0"], 2)
+    with pytest.raises(
+        InputError,
+        match=says(
+            "the base excitation along 'x': the structure has modes as coordinates, 'mode 1.q', whose inertia along the axis is not known. Excite the full structure"
+        ),
+    ):
+        frequency_response(loaded(reduced, da.BaseExcitation("x", displacement=1.0)), np.array([1.0]), METHOD)

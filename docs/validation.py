@@ -61,6 +61,7 @@ AREAS = {
             "Friction in frequency and in time",
             "Hysteretic damping",
             "Interfaces of many contacts",
+            "Rotors in frequency",
             "Hysteretic laws in frequency",
             "Paths and stability in frequency",
             "Structures",

@@ -51,8 +51,10 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "work_precision":
             runs: Any = getattr(outcome, "result").rows  # noqa: B009
             return next(run.error for run in runs if (run.method, run.settings) == (row["method"], row["settings"]))
-        case "frequency_response" if quantity == "fold":
-            return float(getattr(outcome, "result").folds[row["number"]])  # noqa: B009
+        case "frequency_response" if quantity in ("fold", "torus"):
+            marked: Any = getattr(outcome, "result")  # noqa: B009
+            places = [marked.frequencies[point] for kind, point in marked.markers if kind == quantity]
+            return float(places[row["number"]])
         case "frequency_response" if "amplitude" in row:
             curve: Any = getattr(outcome, "result")  # noqa: B009
             point = int(np.argmin(np.abs(curve.frequencies - row["at"])))

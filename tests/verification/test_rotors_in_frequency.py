@@ -85,7 +85,7 @@ def test_the_whirl_of_a_disc_that_tilts(speed, record_evidence):
     )  # fmt: skip
 
 
-CLEARANCE, STATOR, RUBBING = 3e-4, 400.0, 0.1  # m, N/m
+CLEARANCE, STATOR, RUBBING = 3e-4, 1200.0, 0.05  # m, N/m
 
 
 def rub(motion: np.ndarray) -> np.ndarray:
@@ -116,6 +116,27 @@ def test_a_full_annular_rub(record_evidence):
     record_evidence(
         "Full annular rub, largest error of four speeds", 0.0, float(np.abs(errors).max()),
         tolerance=1e-9, topic=TOPIC, kind="closed form", source=SOURCES["rub"],
+    )  # fmt: skip
+
+
+def test_the_path_turns_where_the_ring_opens(record_evidence):
+    # Behind the peak the ring opens over the whole turn at once: a corner, at which the path turns back.
+    system = unbalanced(0.0)
+    system.add(da.UserElement("ring", ("disc.x", "disc.y"), rub))
+    ends = 0.6 * CRITICAL / (2 * np.pi), 1.9 * CRITICAL / (2 * np.pi)
+    curve = da.frequency_response(system, ends, da.HarmonicBalance(3), continuation="arc-length")
+    assert not curve.findings
+    assert len(curve.folds) == 2
+
+    def excess(speed: float) -> float:
+        free = MASS * ECCENTRICITY * speed**2 / abs(STIFFNESS - MASS * speed**2 + 1j * speed * OUTER)
+        return float(free - CLEARANCE)
+
+    corner: Any = brentq(excess, CRITICAL, 1.6 * CRITICAL, xtol=1e-12)
+    turned = 2 * np.pi * curve.frequencies[curve.fold.argmax() :].min()
+    record_evidence(
+        "Rub of a ring: speed at which it opens, a corner of the path", corner, float(turned), unit="rad/s",
+        tolerance=1e-4, relative=True, topic=TOPIC, kind="closed form", source="|m e Ω²/(k - m Ω² + i Ω c)| = g",
     )  # fmt: skip
 
 

@@ -41,6 +41,8 @@ class PathProblem(Protocol):
         self, unknowns: np.ndarray, omega: float, samples: int, plane: CrossingPlane | None = None, /
     ) -> Solution: ...
 
+    def placed(self, unknowns: np.ndarray, omega: float, samples: int, /) -> Solution: ...
+
     def first(self, omega: float, /) -> Solution: ...
 
 
@@ -156,22 +158,46 @@ class PathTangent:
             return solution, None
 
     def turned(self, equations: PathProblem, failed: Solution, length: float) -> "PathTangent | None":
-        """Return the path behind a sharp turn, from the tangent where a step over it failed.
+        """Return the path behind a sharp turn.
 
-        The tangent is oriented by the sign of the determinant with the direction as a row, which a path keeps.
+        Its tangent is that where a step over the turn failed, or that of places ahead: on the old side of a kink the
+        former is the old tangent. It is oriented by the sign of the determinant with the direction as a row, which a
+        path keeps.
         """
         sign = _sign(self.known, self.direction, self.width, self.size)
         if not sign:
             return None
+        for reach in (0.0, *REACHES):
+            place = failed if reach == 0.0 else self._ahead(equations, reach * length)
+            beyond = self._tangent_of(place, sign)
+            if beyond is None or (reach and float(beyond @ self.direction) > STEADY):
+                continue
+            path = self._along(equations, beyond, length, sign)
+            if path is not None:
+                return path
+        return None
+
+    def _ahead(self, equations: PathProblem, length: float) -> Solution:
+        """Return the balance at a place straight ahead, which is no solution."""
+        moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
+        omega = self.known.omega + self.direction[-1] * length * self.width
+        return equations.placed(self.known.unknowns + moved, omega, self.known.samples)
+
+    def _tangent_of(self, place: Solution, sign: float) -> np.ndarray | None:
+        """Return the tangent at a place, oriented; None if there is none."""
         try:
-            beyond = direction_at(failed, self.direction, self.width, self.size)
+            beyond = direction_at(place, self.direction, self.width, self.size)
         except np.linalg.LinAlgError:
             return None
         if not np.all(np.isfinite(beyond)):
             return None
         # A path of regular points keeps the sign of det(J, ∂R/∂ω; t): it chooses between both senses of the tangent.
-        beyond *= sign * _sign(failed, beyond, self.width, self.size)
-        for reach in REACHES if np.any(beyond) else ():
+        beyond *= sign * _sign(place, beyond, self.width, self.size)
+        return beyond if np.any(beyond) else None
+
+    def _along(self, equations: PathProblem, beyond: np.ndarray, length: float, sign: float) -> "PathTangent | None":
+        """Return the path at the end of a step along a tangent behind a turn; None if no step reaches it."""
+        for reach in REACHES:
             # Longer and longer steps along that tangent, until one reaches the branch behind.
             solution, direction = replace(self, direction=beyond).step(equations, reach * length)
             if direction is None or float(direction @ beyond) < STEADY:

@@ -13,7 +13,7 @@ from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.first_guesses import first_guesses
 from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, RECEPTANCE, STIFFNESS, HarmonicBalance
-from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct
+from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct, placed
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
@@ -193,6 +193,10 @@ class Equations:
             better = finer(solution)
             solution = replace(better, iterations=solution.iterations + better.iterations)
         return solution
+
+    def placed(self, unknowns: np.ndarray, omega: float, samples: int) -> Solution:
+        """Return the balance and its tangent at a place, without an iteration."""
+        return placed(self.balance(samples), self.at(omega), self.method, unknowns, omega)
 
     def first(self, omega: float) -> Solution:
         """Return a first point: from contacts that stick, from the motion without contacts, or by increasing force.

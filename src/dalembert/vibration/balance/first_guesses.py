@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from dalembert.vibration.balance.arc_length import along
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct
+from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct, placed
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import CondensedStructure, norm
@@ -133,6 +133,10 @@ class Loading:
     def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: CrossingPlane | None = None) -> Solution:
         """Newton's method from a guess."""
         return correct(self.balance, self.at, self.method, unknowns, load, plane)
+
+    def placed(self, unknowns: np.ndarray, load: float, samples: int) -> Solution:
+        """Return the balance and its tangent at a place, without an iteration."""
+        return placed(self.balance, self.at(load), self.method, unknowns, load)
 
     def first(self, load: float) -> Solution:
         """Return the solution from closed contacts that stick."""

@@ -6,7 +6,7 @@ the residual keeps it from jumping between the sides.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
@@ -132,27 +132,13 @@ def correct(
 
     def place(unknowns: np.ndarray, omega: float, point: Any, step: bool = True) -> Solution:
         point = structure(omega) if point is None else point
-        linearised: Any = of.linearised(point, unknowns) if step else (of.at(point, unknowns), None)
-        evaluation, tangent = linearised
-        distance = 0.0 if plane is None else plane.distance(unknowns, omega)
-        scale = evaluation.scale
-        # On a plane two equations hold, R = 0 and distance = 0, both without dimension: one error for both.
-        error = math.hypot(norm(evaluation.residual) / scale, distance)
-        # Terms as large as Z U cancel in R, so that a residual of some 100 eps of them is rounding. `VERIFIED` limits
-        # the excuse: with a stiff penalty rounding would otherwise pass motions that are not in balance.
-        rounding = min(ROUNDING * max(point.stiffest * norm(unknowns), evaluation.terms) / scale, VERIFIED)
-        converged = error <= max(method.tolerance, rounding)
-        return Solution(
-            omega, unknowns, point, evaluation, tangent, scale, len(errors), error, converged, balance.series.samples,
-            distance=distance,
-        )  # fmt: skip
+        return replace(placed(balance, point, method, unknowns, omega, plane, step), iterations=len(errors))
 
     def moved(at: Solution, step: tuple[np.ndarray, float], part: float) -> Solution:
         # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
         known = at.point if plane is None else None
         return place(at.unknowns + part * step[0], at.omega + part * step[1], known, step=part == 1.0)
 
-    of: Any = balance  # its points are those that `structure` returns
     errors: list[float] = []
     at = place(unknowns, omega, point)
     errors.append(at.error)
@@ -168,6 +154,33 @@ def correct(
         at = best if best.tangent is not None else place(best.unknowns, best.omega, best.point)
         errors.append(at.error)
     return at
+
+
+def placed(
+    balance: AnyBalance,
+    point: Point,
+    method: HarmonicBalance,
+    unknowns: np.ndarray,
+    omega: float,
+    plane: CrossingPlane | None = None,
+    step: bool = True,
+) -> Solution:
+    """Evaluate the balance at a place, without an iteration. ``step``: with its tangent."""
+    of: Any = balance  # its points are those that its structure returns
+    linearised: Any = of.linearised(point, unknowns) if step else (of.at(point, unknowns), None)
+    evaluation, tangent = linearised
+    distance = 0.0 if plane is None else plane.distance(unknowns, omega)
+    scale = evaluation.scale
+    # On a plane two equations hold, R = 0 and distance = 0, both without dimension: one error for both.
+    error = math.hypot(norm(evaluation.residual) / scale, distance)
+    # Terms as large as Z U cancel in R, so that a residual of some 100 eps of them is rounding. `VERIFIED` limits the
+    # excuse: with a stiff penalty rounding would otherwise pass motions that are not in balance.
+    rounding = min(ROUNDING * max(point.stiffest * norm(unknowns), evaluation.terms) / scale, VERIFIED)
+    converged = error <= max(method.tolerance, rounding)
+    return Solution(
+        omega, unknowns, point, evaluation, tangent, scale, 0, error, converged, balance.series.samples,
+        distance=distance,
+    )  # fmt: skip
 
 
 def _stalls(errors: list[float]) -> bool:

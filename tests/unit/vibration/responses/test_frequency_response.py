@@ -239,7 +239,7 @@ def test_a_part_that_nothing_holds_moves_about_its_place(
         ),
         (
             lambda: HarmonicForce("a", 1.0, harmonic=0),
-            "force on 'a': the harmonic is 0; expected 1 or more, and a StaticForce for a force that does not change",
+            "the force on 'a': the harmonic is 0; expected 1 or more, and a StaticForce for a force that does not change",
         ),
     ],
 )

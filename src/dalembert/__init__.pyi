@@ -215,6 +215,7 @@ from dalembert.vibration import FrictionContact as FrictionContact
 from dalembert.vibration import Gap as Gap
 from dalembert.vibration import HarmonicBalance as HarmonicBalance
 from dalembert.vibration import HarmonicForce as HarmonicForce
+from dalembert.vibration import HeldAmplitude as HeldAmplitude
 from dalembert.vibration import Iwan as Iwan
 from dalembert.vibration import LawElement as LawElement
 from dalembert.vibration import Newmark as Newmark

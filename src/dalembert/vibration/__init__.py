@@ -21,6 +21,7 @@ _NAMES = {
     "modes.nonlinear_modes": "backbone",
     "paths.curve": "FrequencyCurve Peak",
     "paths.deformation": "Deformation deformation",
+    "responses.control": "HeldAmplitude",
     "responses.forward_model": "FrequencyResponse",
     "responses.frequency_response": "FollowedPoint frequency_response",
     "responses.curve_family": "CurveFamily Envelope",

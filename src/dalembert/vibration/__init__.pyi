@@ -19,6 +19,7 @@ from dalembert.vibration.paths.curve import FrequencyCurve as FrequencyCurve
 from dalembert.vibration.paths.curve import Peak as Peak
 from dalembert.vibration.paths.deformation import Deformation as Deformation
 from dalembert.vibration.paths.deformation import deformation as deformation
+from dalembert.vibration.responses.control import HeldAmplitude as HeldAmplitude
 from dalembert.vibration.responses.curve_family import CurveFamily as CurveFamily
 from dalembert.vibration.responses.curve_family import Envelope as Envelope
 from dalembert.vibration.responses.forward_model import FrequencyResponse as FrequencyResponse

@@ -80,6 +80,7 @@ TABLES = {
     "DesignTable": ["design"],
     "FrequencyResponseTable": ["frequency_response"],
     "FamilyTable": ["frequency_response"],
+    "HeldAmplitudeTable": ["frequency_response"],
     "CompareInTimeTable": ["frequency_response"],
     "Newmark": ["frequency_response"],
     "TrackResonanceTable": ["track_resonance"],

@@ -9,7 +9,7 @@ _NAMES = {
     "frequency.backbone": "backbone",
     "frequency.contacts": "contact_shares contact_states dissipation hysteresis",
     "frequency.curve_family": "curve_family family_peaks resonance_track",
-    "frequency.frequency_curve": "frequency_curve harmonic_content points_found",
+    "frequency.frequency_curve": "frequency_curve harmonic_content load_factors points_found",
     "frequency.interface_map": "interface_map",
     "frequency.linear_modes": "campbell reduction_errors",
     "frequency.shapes": "deformation mode_shapes",

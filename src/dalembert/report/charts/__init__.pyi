@@ -15,6 +15,7 @@ from dalembert.report.charts.frequency.curve_family import family_peaks as famil
 from dalembert.report.charts.frequency.curve_family import resonance_track as resonance_track
 from dalembert.report.charts.frequency.frequency_curve import frequency_curve as frequency_curve
 from dalembert.report.charts.frequency.frequency_curve import harmonic_content as harmonic_content
+from dalembert.report.charts.frequency.frequency_curve import load_factors as load_factors
 from dalembert.report.charts.frequency.frequency_curve import points_found as points_found
 from dalembert.report.charts.frequency.interface_map import interface_map as interface_map
 from dalembert.report.charts.frequency.linear_modes import campbell as campbell

@@ -32,6 +32,9 @@ def frequency_curve(curve: FrequencyCurve, options: ReportOptions) -> list[Secti
         look = Look.of(curve, *shown_of)
         listed = (table for name in ("peaks", "marked-points", "not-found") for table in tables[name])
         sections.append(forced_response(look, options.first(Backbone), listed))
+        if "control" in curve.provenance:
+            how = "All forces but static ones have this factor, so that the amplitude is held."
+            sections.append(Section("Held amplitude", (Plot("load-factors", charts.load_factors(curve), how),)))
         sections += [friction(look, tables)] if curve.coordinates else []
         how = "Harmonics that stay below a millionth of the largest are left out."
         plot = Plot("harmonic-content", charts.harmonic_content(curve, look.dof), how)

@@ -13,7 +13,7 @@ from dalembert.studio.editor.model_kind import model_elsewhere, model_kind
 from dalembert.study.schema_file import task_names
 
 _MECHANISM = {"body": "Body", "joint": "Joint", "load": "Force"}
-_STRUCTURE = {"mass": "Mass", "spring": "Spring", "rotor": "Rotor part", "force": "Force", "contact": "Contact"}
+_STRUCTURE = {"mass": "Mass", "spring": "Spring", "rotor": "Rotor", "force": "Force", "contact": "Contact"}
 _NAMED = {"parameters": "Parameter", "constants": "Constant", "sensors": "Sensor", "inputs": "Input"}
 _BEGINNING = {"parameters": {"lower": 0.0, "upper": 1.0}}
 """With what a table begins."""

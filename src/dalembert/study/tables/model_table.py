@@ -138,15 +138,17 @@ class ModelTable(StudyTable):
 
     def _refuse_other_parts(self, ways: list[str]) -> None:
         """Refuse parts of a structure in a mechanism, and parts of a mechanism in a structure or beside a function."""
-        if not self.is_structure and (self.structure is not None or any(getattr(self, name) for name in PARTS)):
+        if not self.is_structure and (
+            self.structure is not None or any(getattr(self, name) for name in (*PARTS, "speed"))
+        ):
             stated = (
                 "here is a mechanism, whose springs and forces stand in [[model.load]]"
                 if "body" in ways
                 else "here a function gives it"
             )
             raise problem(
-                "structure, spring, rotor, force and contact belong to a structure of [[model.mass]] tables or of "
-                f"matrices in [model.structure]; {stated}"
+                "structure, spring, rotor, speed, force and contact belong to a structure of [[model.mass]] tables or "
+                f"of matrices in [model.structure]; {stated}"
             )
         states = self.driving or self.start or self.stated
         if "body" not in ways and (self.joint or self.load or self.gravity or states):
@@ -183,7 +185,7 @@ def _wrong_names(components: list[tuple[str, Any]], robot: RobotTable | None) ->
 
 
 def _only_mechanism(schema: dict[str, Any]) -> None:
-    for key in ("function", "forward", "arguments", "structure", *PARTS):
+    for key in ("function", "forward", "arguments", "structure", "speed", *PARTS):
         schema["properties"].pop(key, None)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -18,8 +18,8 @@ from dalembert.study.tasks.curve_supplements import compare_in_time_table, famil
 from dalembert.study.tasks.requirements import needs_structure, unnamed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, Task, silent
-from dalembert.study.text.numbers import Frequencies, FrequencyEnds
-from dalembert.study.text.table import StudyTable, placed
+from dalembert.study.text.numbers import Frequencies, FrequencyEnds, fixed
+from dalembert.study.text.table import Read, StudyTable, placed
 
 if TYPE_CHECKING:
     from dalembert.vibration import FollowedPoint, HarmonicBalance
@@ -39,6 +39,13 @@ class FamilyTable(StudyTable):
     )
 
 
+class HeldAmplitudeTable(StudyTable):
+    """An amplitude that is held by a factor of the forces."""
+
+    dof: str = Field(description="whose first harmonic is held: 'tip.x'")
+    amplitude: Annotated[float, Read(fixed("m"))] = Field(gt=0, description="of its first harmonic")
+
+
 class FrequencyResponseTable(StudyTable):
     """Follow the periodic response of a structure over frequency."""
 
@@ -55,6 +62,7 @@ class FrequencyResponseTable(StudyTable):
     dof: str | None = Field(None, description="whose peak is reported; the first observed one if not given")
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
     stability: bool = Field(False, description="whether to find which points are stable, and where that changes")
+    control: HeldAmplitudeTable | None = Field(None, description="an amplitude that a controller of the forces holds")
     deformed: bool = Field(
         True,
         description="whether the report draws the motion at the peak, where the structure says where its nodes are",
@@ -77,6 +85,13 @@ class FrequencyResponseTable(StudyTable):
             if not value > 0:
                 wrong.append(f"the frequency {value:g} Hz was given; expected positive ones")
                 break
+        if self.control is not None:
+            refused = {"continuation = 'arc-length'": self.continuation == "arc-length", "stability": self.stability}
+            wrong += [
+                f"control: a held amplitude does not go with {what}; leave one of them out"
+                for what, present in refused.items()
+                if present
+            ]
         if ends[0] == ends[1]:
             wrong.append(f"between: {ends[0]:g} Hz was given twice; expected two different frequencies")
         return wrong
@@ -168,6 +183,9 @@ class FrequencyResponseTask(Task):
         if table.observe is not None:
             with placed("[frequency_response], observe"):
                 names = [names[row] for row in problem.lowered.structure.rows(_observed(study) or [])]
+        if table.control is not None:
+            with placed("[frequency_response], control"):
+                problem.lowered.structure.dofs.index(table.control.dof)
         if table.dof is not None and not any(
             name == table.dof or name.rpartition(".")[0] == table.dof for name in names
         ):
@@ -189,7 +207,8 @@ class FrequencyResponseTask(Task):
         ends = np.array(table.between or (table.frequencies[0], table.frequencies[-1]))
 
         def once() -> None:
-            frequency_response(system, ends, balance_of(study), observe=_observed(study), check=False)
+            options = curve_options(study) | {"checkpoint": None, "stability": False, "continuation": "natural"}
+            frequency_response(system, ends, balance_of(study), check=False, **options)
 
         curves = 1 if table.sweep is None else len(_values(study))
         count = None if table.between is not None else curves * len(table.frequencies)
@@ -258,7 +277,12 @@ def balance_of(study: Study) -> "HarmonicBalance":
 
 def curve_options(study: Study) -> dict[str, Any]:
     """Settings of a curve, or of each curve of a family."""
-    settings = study.table.picked("continuation", "stability")
+    from dalembert.vibration import HeldAmplitude
+
+    table = study.table
+    settings = table.picked("continuation", "stability")
+    if table.control is not None:
+        settings["control"] = HeldAmplitude(table.control.dof, table.control.amplitude)
     return {**settings, "observe": _observed(study), "checkpoint": study.checkpoint}
 
 

@@ -1,6 +1,6 @@
 """Track resonance: the peak of a response over a parameter, without whole curves."""
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -11,8 +11,8 @@ from dalembert.study.tables.study import Study
 from dalembert.study.tasks.requirements import needs_structure, unnamed
 from dalembert.study.tasks.sweep import Along, values_along
 from dalembert.study.tasks.task import Outcome, ResultTask
-from dalembert.study.text.numbers import FrequencyEnds
-from dalembert.study.text.table import StudyTable, placed
+from dalembert.study.text.numbers import FrequencyEnds, fixed
+from dalembert.study.text.table import Read, StudyTable, placed
 
 
 class TrackResonanceTable(StudyTable):
@@ -23,6 +23,9 @@ class TrackResonanceTable(StudyTable):
     between: FrequencyEnds = Field(description="frequencies around the peak at the first value")
     dof: str = Field(description="whose peak is followed: 'm2', or 'm2.x'")
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
+    phase: Annotated[float, Read(fixed("rad"))] | None = Field(
+        None, description="of the first harmonic relative to the force, in place of the peak: '-90 deg'"
+    )
 
 
 class TrackResonance(ResultTask):
@@ -48,8 +51,9 @@ class TrackResonance(ResultTask):
         with placed("[track_resonance], amplitude"):
             Amplitude(table.amplitude, study.balance.keeping(highest_order(table.amplitude)).first().orders)
         values = _values(study)
+        what = "peak" if table.phase is None else "phase resonance"
         return (
-            f"follows the peak of {table.dof} ({table.amplitude}) over {len(values)} values of {table.parameter}, "
+            f"follows the {what} of {table.dof} ({table.amplitude}) over {len(values)} values of {table.parameter}, "
             f"{values[0]:g} to {values[-1]:g}: {len(values)} simulations"
         )
 
@@ -90,6 +94,7 @@ def _track(study: Study, values: np.ndarray) -> Any:
         study.balance,
         dof=table.dof,
         kind=table.amplitude,
+        phase=table.phase,
         unit=next(item.unit for item in study.parameters if item.name == name),
         checkpoint=study.checkpoint,
     )

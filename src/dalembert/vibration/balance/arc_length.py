@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import CrossingPlane, Solution
+from dalembert.vibration.balance.newton import Constraint, CrossingPlane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
 from dalembert.vibration.interface.condensation import norm
 
@@ -38,7 +38,7 @@ class PathProblem(Protocol):
     def method(self) -> HarmonicBalance: ...
 
     def solve(
-        self, unknowns: np.ndarray, omega: float, samples: int, plane: CrossingPlane | None = None, /
+        self, unknowns: np.ndarray, omega: float, samples: int, plane: Constraint | None = None, /
     ) -> Solution: ...
 
     def placed(self, unknowns: np.ndarray, omega: float, samples: int, /) -> Solution: ...
@@ -173,6 +173,9 @@ class PathTangent:
             if beyond is None or (reach and float(beyond @ self.direction) > STEADY):
                 continue
             path = self._along(equations, beyond, length, sign)
+            if path is None and float(beyond @ self.direction) < 0:
+                # Several kinks at once, as those of a symmetric motion, may change the sign: forwards then.
+                path = self._along(equations, -beyond, length, 0.0)
             if path is not None:
                 return path
         return None
@@ -196,13 +199,15 @@ class PathTangent:
         return beyond if np.any(beyond) else None
 
     def _along(self, equations: PathProblem, beyond: np.ndarray, length: float, sign: float) -> "PathTangent | None":
-        """Return the path at the end of a step along a tangent behind a turn; None if no step reaches it."""
+        """Return the path at the end of a step along a tangent behind a turn; None if no step reaches it. ``sign``: of
+        the determinant there; 0 for any.
+        """
         for reach in REACHES:
             # Longer and longer steps along that tangent, until one reaches the branch behind.
             solution, direction = replace(self, direction=beyond).step(equations, reach * length)
             if direction is None or float(direction @ beyond) < STEADY:
                 continue
-            if _sign(solution, direction, self.width, self.size) == sign:
+            if not sign or _sign(solution, direction, self.width, self.size) == sign:
                 return PathTangent(solution, direction_at(solution, direction, self.width), self.width)
         return None
 

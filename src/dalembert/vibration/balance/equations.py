@@ -13,7 +13,7 @@ from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.first_guesses import first_guesses
 from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, RECEPTANCE, STIFFNESS, HarmonicBalance
-from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct, placed
+from dalembert.vibration.balance.newton import AnyBalance, Constraint, Point, Solution, correct, placed
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
@@ -122,14 +122,16 @@ class Equations:
         unknowns: np.ndarray,
         omega: float,
         samples: int,
-        plane: CrossingPlane | None = None,
+        plane: Constraint | None = None,
         point: Point | None = None,
+        at: Callable[[float], Point] | None = None,
     ) -> Solution:
         """Solve the equations by Newton's method from a guess. Samples are doubled until they suffice. If nothing holds
         the structure along a motion, too few samples may leave a mean force along it, which no mean position balances.
-        More samples remove this force.
+        More samples remove this force. ``at``: the structure at a value of ω; of another parameter if it is given.
         """
-        fresh = partial(self.newton, unknowns, omega, samples, plane, point)
+        at = at or self.at
+        fresh = partial(self.newton, unknowns, omega, samples, plane, point, at)
         if self.checkpoint is None:
             return fresh()
         computed: list[Solution] = []
@@ -147,29 +149,30 @@ class Equations:
             return solution.unknowns, np.array(numbers, dtype=float)
 
         values, numbers = self.checkpoint.once(self._key(unknowns, omega, samples, plane), compute)
-        return computed[0] if computed else self._restored(values, *numbers.tolist())
+        return computed[0] if computed else self._restored(at, values, *numbers.tolist())
 
     def newton(
         self,
         unknowns: np.ndarray,
         omega: float,
         samples: int,
-        plane: CrossingPlane | None,
+        plane: Constraint | None,
         point: Point | None,
+        at: Callable[[float], Point],
     ) -> Solution:
         """Solve as :meth:`solve` does, without a look at the checkpoint."""
 
         def finer(candidate: Solution) -> Solution:
             balance, near = self.balance(2 * candidate.samples), (candidate.unknowns, candidate.omega)
-            return correct(balance, self.at, self.method, *near, plane, candidate.point)
+            return correct(balance, at, self.method, *near, plane, candidate.point)
 
         def solved(number: int) -> Solution:
-            return correct(self.balance(number), self.at, self.method, unknowns, omega, plane, point)
+            return correct(self.balance(number), at, self.method, unknowns, omega, plane, point)
 
         def back(candidate: Solution) -> Solution:
             """The solution with the first number of samples, by which a curve stays smooth; None if there is none."""
             near = candidate.unknowns, candidate.omega
-            first = correct(self.balance(samples), self.at, self.method, *near, plane, candidate.point)
+            first = correct(self.balance(samples), at, self.method, *near, plane, candidate.point)
             return first if first.converged else candidate
 
         # Samples first, motion later: a residual below `sampling` that Newton's method cannot reduce is one of kinks,
@@ -220,22 +223,22 @@ class Equations:
         return self.checkpoint.once(key, lambda: (compute(),))[0]
 
     def _restored(
-        self, unknowns: np.ndarray, omega: float, iterations: float, error: float, converged: float, samples: float,
-        sampling_error: float,
+        self, at: Callable[[float], Point], unknowns: np.ndarray, omega: float, iterations: float, error: float,
+        converged: float, samples: float, sampling_error: float,
     ) -> Solution:  # fmt: skip
         balance: Any = self.balance(int(samples))
-        point = self.at(omega)
+        point = at(omega)
         evaluation, tangent = balance.linearised(point, unknowns)
         return Solution(
             omega, unknowns, point, evaluation, tangent, evaluation.scale, int(iterations), error,
             bool(converged), int(samples), sampling_error,
         )  # fmt: skip
 
-    def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: CrossingPlane | None) -> bytes:
+    def _key(self, unknowns: np.ndarray, omega: float, samples: int, plane: Constraint | None) -> bytes:
         """Hash of all that a solution depends on."""
         parts = [np.array([omega, samples]), unknowns]
         if plane is not None:
-            parts += [plane.direction, plane.unknowns, np.array([plane.omega, plane.size, plane.width])]
+            parts += plane.numbers()
         return hashlib.sha256(self._system + b"".join(map(np.ndarray.tobytes, parts))).digest()
 
     @cached_property

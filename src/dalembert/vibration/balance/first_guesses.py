@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from dalembert.vibration.balance.arc_length import along
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
-from dalembert.vibration.balance.newton import AnyBalance, CrossingPlane, Point, Solution, correct, placed
+from dalembert.vibration.balance.newton import AnyBalance, Constraint, Point, Solution, correct, placed
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import CondensedStructure, norm
@@ -130,7 +130,7 @@ class Loading:
         """The structure with a part of the varying forces, and its derivatives by that."""
         return self.point.loaded(load)
 
-    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: CrossingPlane | None = None) -> Solution:
+    def solve(self, unknowns: np.ndarray, load: float, samples: int, plane: Constraint | None = None) -> Solution:
         """Newton's method from a guess."""
         return correct(self.balance, self.at, self.method, unknowns, load, plane)
 

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,30 @@ VERIFIED = 1e-8
 """Residual, as part of the forces, above which no rounding is an excuse: nothing is balanced there."""
 
 
+class Constraint(Protocol):
+    """A further equation, for a further unknown: the frequency, or another parameter. ``size``, ``width``: scales of
+    the unknowns and of the parameter.
+    """
+
+    @property
+    def size(self) -> float: ...
+
+    @property
+    def width(self) -> float: ...
+
+    def distance(self, unknowns: np.ndarray, omega: float, point: Point) -> float:
+        """Return what has to be zero, without dimension."""
+        ...
+
+    def slope(self, unknowns: np.ndarray, omega: float, point: Point) -> np.ndarray:
+        """Return its derivatives by the scaled unknowns and the scaled parameter, (unknowns + 1,)."""
+        ...
+
+    def numbers(self) -> list[np.ndarray]:
+        """Return all that it depends on."""
+        ...
+
+
 @dataclass(frozen=True)
 class CrossingPlane:
     """A plane across a path in scaled unknowns: direction · (y - place) = 0, with y = (U/size, ω/width). ``direction``
@@ -43,10 +67,18 @@ class CrossingPlane:
     size: float
     width: float
 
-    def distance(self, unknowns: np.ndarray, omega: float) -> float:
+    def distance(self, unknowns: np.ndarray, omega: float, point: Point) -> float:
         """Return the distance of a point from the plane."""
         moved = np.append((unknowns - self.unknowns).ravel() / self.size, (omega - self.omega) / self.width)
         return float(self.direction @ moved)
+
+    def slope(self, unknowns: np.ndarray, omega: float, point: Point) -> np.ndarray:
+        """Return the direction, which is the same everywhere."""
+        return self.direction
+
+    def numbers(self) -> list[np.ndarray]:
+        """Return all that it depends on."""
+        return [self.direction, self.unknowns, np.array([self.omega, self.size, self.width])]
 
 
 @dataclass(frozen=True)
@@ -54,7 +86,7 @@ class Solution:
     """Last iterate of Newton's method, converged or not. ``unknowns`` (q, coefficients); ``scale``: size of the forces
     that are in balance, N; ``error``: residual as part of the forces; ``sampling_error``: change of the residual with
     twice the samples, as part of the forces; ``distance``: from the plane across the path on which it was sought, in
-    the plane's scales; 0 without a plane.
+    the plane's scales; 0 without a plane; ``load``: part of the varying forces that acts.
     """
 
     omega: float
@@ -69,6 +101,7 @@ class Solution:
     samples: int
     sampling_error: float = np.nan
     distance: float = 0.0
+    load: float = 1.0
 
     @property
     def left(self) -> float:
@@ -123,11 +156,12 @@ def correct(
     method: HarmonicBalance,
     unknowns: np.ndarray,
     omega: float,
-    plane: CrossingPlane | None = None,
+    plane: Constraint | None = None,
     point: Point | None = None,
 ) -> Solution:
     """Solve by Newton's method from a guess, at ω or on a plane. ``structure`` returns the condensed structure at a
-    value of ω, or of another parameter of the path; ``point`` is that at ω if it is known.
+    value of ω, or of another parameter of the path; ``point`` is that at ω if it is known; ``plane``: an equation for
+    ω.
     """
 
     def place(unknowns: np.ndarray, omega: float, point: Any, step: bool = True) -> Solution:
@@ -162,14 +196,14 @@ def placed(
     method: HarmonicBalance,
     unknowns: np.ndarray,
     omega: float,
-    plane: CrossingPlane | None = None,
+    plane: Constraint | None = None,
     step: bool = True,
 ) -> Solution:
     """Evaluate the balance at a place, without an iteration. ``step``: with its tangent."""
     of: Any = balance  # its points are those that its structure returns
     linearised: Any = of.linearised(point, unknowns) if step else (of.at(point, unknowns), None)
     evaluation, tangent = linearised
-    distance = 0.0 if plane is None else plane.distance(unknowns, omega)
+    distance = 0.0 if plane is None else plane.distance(unknowns, omega, point)
     scale = evaluation.scale
     # On a plane two equations hold, R = 0 and distance = 0, both without dimension: one error for both.
     error = math.hypot(norm(evaluation.residual) / scale, distance)
@@ -191,14 +225,15 @@ def _stalls(errors: list[float]) -> bool:
     return len(errors) > PATIENCE and min(errors[-PATIENCE:]) > PROGRESS * min(errors[:-PATIENCE])
 
 
-def _step(at: Solution, plane: CrossingPlane | None) -> tuple[np.ndarray, float] | None:
+def _step(at: Solution, plane: Constraint | None) -> tuple[np.ndarray, float] | None:
     """Newton's step of U and ω; None where the matrix is singular."""
     residual = at.evaluation.residual
     try:
         if plane is not None:
             scales = plane.size, plane.width, at.scale
             top = -residual / at.scale
-            change, turned = bordered(at.tangent, plane.direction, scales, top, -at.distance, at.tangent.forcing)
+            row = plane.slope(at.unknowns, at.omega, at.point)
+            change, turned = bordered(at.tangent, row, scales, top, -at.distance, at.tangent.forcing)
             return change * plane.size, turned * plane.width
         return -at.tangent.solve(residual[:, :, None], at.tangent.forcing)[:, :, 0], 0.0
     except np.linalg.LinAlgError:

@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from dalembert.structure.structure import ROTATING
+from dalembert.structure.structure import MATRICES, ROTATING
 from dalembert.vibration.balance.balance import Balance
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.balance.receptance_tangent import ReceptanceTangent
+from dalembert.vibration.interface.dynamic_stiffness import combined, factors
 from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.interface.receptances import ReceptancePoint
 
@@ -98,20 +99,11 @@ def _by_receptances(
 
 def _unbalanced(lowered: Lowered, point: Any, motion: np.ndarray) -> np.ndarray:
     """Z' x, (orders, n), from the imaginary parts of the matrices and of the speed of a rotor."""
-    structure, s = lowered.structure, point.frequencies
     speed = lowered.spin(point.omega)[0]
-    factors = {
-        "stiffness": np.ones_like(s),
-        "mass": -(s**2),
-        "damping": 1j * s,
-        "loss": 1j * np.sign(s),
-        "circulatory": np.ones_like(s),
-        "gyroscopic": 1j * s,
-    }
-    matrices = {name: getattr(structure, name) for name in factors}
-    matrices |= {name: speed * matrices[name] for name in ROTATING if matrices[name] is not None}
-    parts = ((_step(matrix) @ motion.T) * factors[name] for name, matrix in matrices.items() if matrix is not None)
-    return np.asarray(sum(parts)).T
+    matrices = {name: matrix for name in MATRICES if (matrix := getattr(lowered.structure, name)) is not None}
+    matrices |= {name: speed * matrices[name] for name in ROTATING if name in matrices}
+    moved = {name: _step(matrix) @ motion.T for name, matrix in matrices.items()}
+    return np.asarray(combined(factors(point.frequencies, 1.0), moved)).T
 
 
 def _step(array: Any) -> Any:

@@ -74,18 +74,18 @@ class Uncondensed:
                 f"stability and nonlinear modes take dense matrices of all {self.lowered.structure.size} degrees of "
                 "freedom; reduce the structure first (craig_bampton)"
             )
-        stiffness, mass, damping, *more = (
+        blocks = (
             np.block([[outer, across], [below, np.diag(inner) if inner.ndim == 1 else inner]])
             for outer, across, below, inner in zip(
                 condensation.outer, condensation.across, condensation.below, condensation.inner, strict=True
             )
         )
-        for name, matrix in zip(condensation.more, more, strict=True):
-            if name == "circulatory":
-                stiffness = stiffness + self.speed * matrix
-            elif name == "gyroscopic":
-                damping = damping + self.speed * matrix
-        return stiffness, mass, damping
+        matrices = dict(zip(condensation.kinds, blocks, strict=True))
+        stiffness, damping = (
+            matrices[name] + self.speed * matrices.get(turning, 0.0)
+            for name, turning in (("stiffness", "circulatory"), ("damping", "gyroscopic"))
+        )
+        return stiffness, matrices["mass"], damping
 
     def elements(self, linear: np.ndarray, unknowns: np.ndarray, omega: float) -> Local:
         """The elements where the linear part and the retained coordinates, (q, coefficients), are these."""

@@ -23,6 +23,7 @@ from scipy.sparse.linalg import splu
 from dalembert.errors import ModelError, SolveError, listed
 from dalembert.structure.eigenmodes import real_part
 from dalembert.structure.structure import ROTATING
+from dalembert.vibration.interface.dynamic_stiffness import combined, factors, slope_factors
 from dalembert.vibration.interface.free_motions import FLOATING, free_motions, moving_names
 from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.lowering import Lowered
@@ -104,10 +105,11 @@ class CondensedStructure:
         """The same with a part of the varying forces, and derivatives by that part."""
         # f(p) = f_0 + p f_varying at one frequency: ∂R/∂p = -f_varying, and no matrix depends on p. Static forces stay,
         # as they may be what presses the contacts.
-        varying = np.where(self.frequencies[:, None] > 0, self.force, 0.0)
+        varies = self.frequencies[:, None] > 0
+        varying = np.where(varies, self.force, 0.0)
         return replace(
             self, slope=np.zeros_like(self.slope), force=self.force + (part - 1.0) * varying, force_slope=varying,
-            rate=0.0,
+            free=np.where(varies, part, 1.0) * self.free, rate=0.0,
         )  # fmt: skip
 
     def interior(self, retained: np.ndarray) -> np.ndarray:
@@ -125,11 +127,11 @@ class Condensation:
         structure, coordinates = lowered.structure, lowered.coordinates
         self.orders, self._spin = np.array(orders, dtype=float), lowered.spin
         size: int = structure.size
-        matrices = [real_part(structure.stiffness), real_part(structure.mass)]
-        matrices.append(matrices[0] * 0.0 if structure.damping is None else real_part(structure.damping))
-        # Those beyond stiffness, mass and damping that the structure has.
-        self.more = [name for name in ("loss", *ROTATING) if getattr(structure, name) is not None]
-        matrices += [real_part(getattr(structure, name)) for name in self.more]
+        stated = {name: getattr(structure, name) for name in ("stiffness", "mass", "damping", "loss", *ROTATING)}
+        if stated["damping"] is None:
+            stated["damping"] = 0.0 * structure.stiffness
+        self.kinds = [name for name, matrix in stated.items() if matrix is not None]
+        matrices = [real_part(stated[name]) for name in self.kinds]
         retained, interior = coordinates.retained, coordinates.interior
         dense = size <= DENSE or not issparse(structure.stiffness)
         self.retained, self.back = retained.toarray(), interior.toarray() if dense else interior
@@ -334,41 +336,23 @@ class Condensation:
 
     def _dynamic(self, blocks: list[Any], s: Any, speed: float) -> Any:
         """Z at frequencies (orders,), or at one."""
-        stiffness, mass, damping, *more = blocks
         if np.ndim(s):
-            s = s.reshape(-1, *[1] * mass.ndim)
-        result = stiffness - s**2 * mass + 1j * s * damping
-        factors = {"loss": 1j * np.sign(s), "circulatory": speed, "gyroscopic": 1j * s * speed}
-        for name, matrix in zip(self.more, more, strict=True):
-            result = result + factors[name] * matrix
-        return result
+            s = s.reshape(-1, *[1] * blocks[0].ndim)
+        return combined(factors(s, speed), dict(zip(self.kinds, blocks, strict=True)))
 
     def _slope(self, blocks: list[Any], s: np.ndarray, spin: tuple[float, float]) -> Any:
         """Derivative of :meth:`_dynamic` by ω. ``spin``: speed of the rotor, and its derivative by ω."""
-        _, mass, damping, *more = blocks
-        orders, (speed, rate) = self.orders.reshape(-1, *[1] * mass.ndim), spin
-        s = s.reshape(orders.shape)
-        result = orders * (1j * damping - 2 * s * mass)
-        factors = {"circulatory": rate, "gyroscopic": 1j * (orders * speed + s * rate)}
-        for name, matrix in zip(self.more, more, strict=True):
-            if name in factors:
-                result = result + factors[name] * matrix
-        return result
+        orders = self.orders.reshape(-1, *[1] * blocks[0].ndim)
+        weights = slope_factors(orders, s.reshape(orders.shape), spin)
+        return combined(weights, dict(zip(self.kinds, blocks, strict=True)))
 
     def _inner_slope(self, s: np.ndarray, solved: np.ndarray, spin: tuple[float, float]) -> np.ndarray:
         """Derivative of Z_ll by ω, times columns (orders, l, columns)."""
-        if not issparse(self.inner[1]):
+        if not issparse(self.inner[0]):
             return _times(self._slope(self.inner, s, spin), solved)
-        _, mass, damping, *more = self.inner
-        result = []
-        for h, w, x in zip(self.orders, s, solved, strict=True):
-            column = h * (1j * (damping @ x) - 2 * w * (mass @ x))
-            factors = {"circulatory": spin[1], "gyroscopic": 1j * (h * spin[0] + w * spin[1])}
-            for name, matrix in zip(self.more, more, strict=True):
-                if name in factors:
-                    column += factors[name] * (matrix @ x)
-            result.append(column)
-        return np.stack(result)
+        moved = ({name: block @ x for name, block in zip(self.kinds, self.inner, strict=True)} for x in solved)
+        weights = (slope_factors(h, w, spin) for h, w in zip(self.orders, s, strict=True))
+        return np.stack([combined(*pair) for pair in zip(weights, moved, strict=True)])
 
     @cached_property
     def _side_by_side(self) -> tuple[list[np.ndarray], list[tuple[slice, tuple[int, ...]]]]:

@@ -63,6 +63,8 @@ class FrequencyCurve(ConvergedResult):
         1 stable, 0 unstable, -1 where it was not asked for, the point was not found, or a stop is touched and twice
         the harmonics change the largest growth by more than this growth, or a fold lies between the motion and the
         one with more harmonics, by which the stability is judged. A fold has what comes before.
+    load_factors : array, shape (points,)
+        Of the varying forces; 1 where no amplitude is held.
     markers : tuple of (str, int)
         Bifurcations and their points: ``"fold"``, and where stability was asked for ``"torus"``, ``"period doubling"``
         and ``"branch point"``.
@@ -95,6 +97,7 @@ class FrequencyCurve(ConvergedResult):
     samples: Points
     sampling_errors: Points
     stable: Points
+    load_factors: Points
     markers: tuple[tuple[str, int], ...]
     provenance: Mapping[str, Any]
     findings: tuple[Finding, ...] = ()

@@ -18,7 +18,7 @@ from dalembert.vibration.balance.conclusions import (
     unconverged,
     unconverged_findings,
 )
-from dalembert.vibration.balance.equations import Equations, chosen_solver, equations
+from dalembert.vibration.balance.equations import Equations, by_stiffness, chosen_solver, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.truncation import (
@@ -34,6 +34,7 @@ from dalembert.vibration.paths.continuation import across, at_frequencies, natur
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import observed, response_of, restarted
 from dalembert.vibration.paths.path_end import end_findings
+from dalembert.vibration.responses.control import Controlled, HeldAmplitude
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.requirements import positive_numbers, require_forces, require_viscous
@@ -84,6 +85,7 @@ def frequency_response(
     observe: Sequence[str] | None = None,
     start: tuple[FrequencyCurve, int] | None = None,
     stability: bool = False,
+    control: HeldAmplitude | None = None,
     check: bool = True,
     checkpoint: Checkpoint | None = None,
     on_point: OnPoint | None = None,
@@ -111,6 +113,8 @@ def frequency_response(
         Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
         friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
         frequencies these places are separate points; with given frequencies the first one behind is marked.
+    control : HeldAmplitude, optional
+        An amplitude that is held by a factor of the varying forces, in the ``load_factors`` of the curve.
     check : bool
         Whether the largest motion is computed again with twice the harmonics. A change is the finding
         ``"few-harmonics"``.
@@ -131,7 +135,8 @@ def frequency_response(
     InputError
         For frequencies that are not positive, unknown degrees of freedom, a start that does not fit, and stability of
         a structure that is too large for dense matrices, has hysteretic damping, or where several degrees of freedom
-        share one mass.
+        share one mass. For a held amplitude together with stability, arc length, a start, receptances or
+        ``harmonics="auto"``.
     ModelError
         For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
 
@@ -160,11 +165,29 @@ def frequency_response(
     if stability:
         require_viscous(system.structure, "stability and Floquet multipliers")
     settings = {"continuation": continuation, "frequencies": list(map(float, frequencies)) if is_path else "given"}
-    posed = _PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point)
-    method = posed.solved(method or HarmonicBalance())
+    method = method or HarmonicBalance()
+    if control is not None:
+        _require_control(continuation, start, stability, method)
+        settings["control"] = asdict(control)
+        method, check = by_stiffness(method, "frequency_response with a held amplitude"), False
+    posed = _PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point, control)
+    method = posed.solved(method)
     if method.automatic:
         return _refine(posed, method)
     return _conclude(posed, _follow(posed, posed.equations(method), start, stability, check))
+
+
+def _require_control(continuation: str, start: CurvePoint | None, stability: bool, method: HarmonicBalance) -> None:
+    """Refuse what a held amplitude does not take."""
+    refused = {
+        "continuation='arc-length'": continuation == ARC_LENGTH,
+        "a start": start is not None,
+        "stability=True": stability,
+        "harmonics='auto'": method.automatic,
+    }
+    for what, present in refused.items():
+        if present:
+            raise InputError(f"frequency_response: a held amplitude was asked for with {what}. Leave one of them out")
 
 
 @dataclass(frozen=True)
@@ -180,6 +203,7 @@ class _PosedCurve:
     stability: bool
     checkpoint: Checkpoint | None
     on_point: OnPoint | None
+    control: HeldAmplitude | None = None
 
     def solved(self, method: HarmonicBalance) -> HarmonicBalance:
         """Return the method with a way to write the structure."""
@@ -235,10 +259,11 @@ def _points(posed: _PosedCurve, problem: Equations, start: CurvePoint | None) ->
     known = None if start is None else restarted(problem, *start, "frequency_response")
     if start is not None and start[0].orders != problem.method.orders and known is not None and not known.converged:
         known = None
+    path = problem if posed.control is None else Controlled(problem, posed.control)
     if not posed.is_path:
-        return at_frequencies(problem, posed.omegas, known)
+        return at_frequencies(path, posed.omegas, known)
     follow = across if posed.settings["continuation"] == ARC_LENGTH else natural
-    return follow(problem, float(posed.omegas[0]), float(posed.omegas[1]), known)
+    return follow(path, float(posed.omegas[0]), float(posed.omegas[1]), known)
 
 
 def _progress(posed: _PosedCurve, omega: float, count: int) -> float:
@@ -317,6 +342,7 @@ def _record(problem: Equations, point: PathPoint, rows: np.ndarray) -> dict[str,
         "samples": solution.samples,
         "sampling_errors": solution.sampling_error,
         "stable": point.stable,
+        "load_factors": solution.load if solution.converged else np.nan,
         "marker": point.marker or (FOLD if point.fold else ""),
         "response": response,
         "displacements": displacements,

@@ -18,31 +18,22 @@ from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import single_thread
-from dalembert.vibration.balance.arc_length import PathTangent, direction_at, zero_between
+from dalembert.vibration.balance.arc_length import direction_at
 from dalembert.vibration.balance.equations import Equations, by_stiffness, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.balance.truncation import ForcedLevel, Truncation, choice_findings, enough_harmonics, hardest
-from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.curve_points import response_of, restarted
+from dalembert.vibration.paths.curve_points import restarted
 from dalembert.vibration.responses.frequency_response import ARC_LENGTH, frequency_response
+from dalembert.vibration.responses.peak_search import WIDTH, Peak, PeakSearch, upwards
+from dalembert.vibration.responses.phase_search import PhaseSearch
 from dalembert.vibration.responses.resonance_track import ResonanceTrack
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
-
-WIDTH = 0.1
-"""Change of ω, as part of itself, that counts as much along the path as the whole motion."""
-FIRST, LONGEST, SHORTEST = 0.02, 0.3, 1e-6
-"""Steps along the path, as part of the motion."""
-BEYOND = 1.5
-"""Step that is to pass the peak, as part of the way to it by the curvature at the peak before."""
-MOST_STEPS = 60
-NARROW = 1e-6
-"""Length along the path to which a peak is found."""
 
 
 @takes_checked("values")
@@ -56,10 +47,11 @@ def track_resonance(
     *,
     dof: str,
     kind: str = "peak",
+    phase: float | None = None,
     unit: str = "",
     checkpoint: Checkpoint | None = None,
 ) -> ResonanceTrack:
-    """Follow the peak of a response over a parameter of the system, such as a preload or a force.
+    """Follow the peak of a response, or its phase resonance, over a parameter such as a preload or a force.
 
     Parameters
     ----------
@@ -77,6 +69,10 @@ def track_resonance(
         Degree of freedom, or a node with only one.
     kind : str
         ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
+    phase : float, optional
+        rad: the point is followed at which the first harmonic of ``dof`` has this phase relative to the force, in place
+        of the peak. With -π/2 it is the phase resonance, as a phase-locked loop finds it. The force is that on ``dof``,
+        else the largest one.
     unit : str
         Of the parameter.
     checkpoint : Checkpoint, optional
@@ -118,7 +114,9 @@ def track_resonance(
     first = builder(**{parameter: float(numbers[0])})
     name = (names := lower(first).structure.dofs).names[row := names.index(dof)]
     Amplitude(kind, method.first().orders)  # an unknown kind is refused before a curve is followed
-    posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, checkpoint)
+    if phase is not None and not np.isfinite(phase):
+        raise InputError(f"track_resonance: phase is {phase}; expected a number in rad")
+    posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, phase, checkpoint)
     curve, level, spent = _first_curve(posed, first, start)
     level, peaks, findings = _follow(posed, curve, level)
     solves = np.array([count for _, count in peaks])
@@ -133,7 +131,7 @@ def track_resonance(
         amplitudes=np.array([peak.amplitude if peak else np.nan for peak, _ in peaks]),
         solves=solves,
         converged=np.array([peak is not None for peak, _ in peaks]),
-        provenance={**versions(), "method": asdict(level)},
+        provenance={**versions(), "method": asdict(level), **({} if phase is None else {"phase": float(phase)})},
         findings=findings,
     )
 
@@ -150,6 +148,7 @@ class _PosedTrack:
     dof: str
     row: int
     kind: str
+    phase: float | None
     checkpoint: Checkpoint | None
 
     def equations(self, value: float, level: HarmonicBalance) -> Equations:
@@ -170,7 +169,7 @@ def _first_curve(
 
 def _follow(
     posed: _PosedTrack, curve: FrequencyCurve, level: HarmonicBalance
-) -> "tuple[HarmonicBalance, list[tuple[_Peak | None, int]], tuple[Finding, ...]]":
+) -> "tuple[HarmonicBalance, list[tuple[Peak | None, int]], tuple[Finding, ...]]":
     """Follow the peak, with more and more harmonics where their number is chosen.
 
     Returns the method, each peak with its number of solutions, and the finding on harmonics.
@@ -182,8 +181,9 @@ def _follow(
         if not np.any(np.isfinite(sizes)):
             raise InputError("track_resonance: no point of the first curve was found; begin with another window")
         top = restarted(first, curve, int(np.nanargmax(sizes)), "track_resonance")
-        climber = _Climber(posed.row, Amplitude(posed.kind, level.orders))
-        peaks = list(_followed(problem, climber, posed.values, _Peak(value, first, top)))
+        size = Amplitude(posed.kind, level.orders)
+        seeker = PeakSearch(posed.row, size) if posed.phase is None else PhaseSearch(posed.row, size, posed.phase)
+        peaks = list(_followed(problem, seeker, posed.values, Peak(value, first, top)))
         if not posed.method.automatic:
             return level, peaks, ()
         better, error = _enough_harmonics(level, [peak for peak, _ in peaks if peak is not None])
@@ -192,7 +192,7 @@ def _follow(
         level = better
 
 
-def _enough_harmonics(level: HarmonicBalance, peaks: "list[_Peak]") -> tuple[HarmonicBalance, Truncation | None]:
+def _enough_harmonics(level: HarmonicBalance, peaks: list[Peak]) -> tuple[HarmonicBalance, Truncation | None]:
     """Return the method whose truncation errors at the hardest of the peaks are small, and the largest of them."""
     unknowns = np.stack([peak.solution.unknowns for peak in peaks]) if peaks else np.zeros((0, 1, 1))
     method, largest = level, None
@@ -204,20 +204,9 @@ def _enough_harmonics(level: HarmonicBalance, peaks: "list[_Peak]") -> tuple[Har
     return method, largest
 
 
-@dataclass(frozen=True)
-class _Peak:
-    """A peak at a value of the parameter, and the curvature of the logarithm of the amplitude along the path."""
-
-    value: float
-    problem: Equations
-    solution: Solution
-    amplitude: float = float("nan")
-    bend: float = float("nan")
-
-
 def _followed(
-    problem: Callable[[float], Equations], climber: "_Climber", values: np.ndarray, begin: _Peak
-) -> Iterator[tuple[_Peak | None, int]]:
+    problem: Callable[[float], Equations], seeker: PeakSearch | PhaseSearch, values: np.ndarray, begin: Peak
+) -> Iterator[tuple[Peak | None, int]]:
     """Yield the peak at each value, None if not converged, and the number of solutions."""
     known, before = begin, None
     for value in values:
@@ -225,7 +214,7 @@ def _followed(
         while way:
             at_value = problem(way[-1])
             corrected, spent = _carried(at_value, known, before, way[-1])
-            peak, climbed = (None, 0) if corrected is None else climber.climb(at_value, corrected, known.bend)
+            peak, climbed = (None, 0) if corrected is None else seeker.search(at_value, corrected, known.bend)
             count += spent + climbed
             if peak is not None:
                 reached = replace(peak, value=way.pop())
@@ -238,14 +227,14 @@ def _followed(
         yield (reached if reached is not None and reached.value == value else None), count
 
 
-def _carried(problem: Equations, known: _Peak, before: _Peak | None, value: float) -> tuple[Solution | None, int]:
+def _carried(problem: Equations, known: Peak, before: Peak | None, value: float) -> tuple[Solution | None, int]:
     """Return a solution at another value near a known peak, on a plane across the path, and the number of trials."""
     last, tries = known.solution, [0.0]
     if before is not None and known.value != before.value:
         # A secant through the last two peaks first, then the last peak itself.
         tries.insert(0, (value - known.value) / (known.value - before.value))
     width = WIDTH * last.omega
-    direction = direction_at(last, _upwards(last), width)
+    direction = direction_at(last, upwards(last), width)
     for number, part in enumerate(tries):
         guess, omega = last.unknowns, last.omega
         if part and before is not None and guess.shape == before.solution.unknowns.shape:
@@ -258,86 +247,3 @@ def _carried(problem: Equations, known: _Peak, before: _Peak | None, value: floa
         if solution.converged and solution.omega > 0:
             return solution, number + 1
     return None, len(tries)
-
-
-def _upwards(solution: Solution) -> np.ndarray:
-    direction = np.zeros(solution.unknowns.size + 1)
-    direction[-1] = 1.0
-    return direction
-
-
-@dataclass(frozen=True)
-class _Climber:
-    """Search of the largest amplitude of a row of the structure along a path."""
-
-    row: int
-    size: Amplitude
-
-    def climb(self, problem: Equations, solution: Solution, bend: float) -> tuple[_Peak | None, int]:
-        """Return the peak next to a solution, and the number of solutions."""
-        width = WIDTH * solution.omega
-        direction = direction_at(solution, _upwards(solution), width)
-        rise = self._rise(problem, solution, direction, PathTangent(solution, direction, width).size, width)
-        if rise < 0:
-            rise, direction = -rise, -direction
-        length = FIRST if np.isnan(bend) else float(np.clip(BEYOND * abs(rise / bend), SHORTEST, LONGEST))
-        for count in range(1, MOST_STEPS + 1):
-            path = PathTangent(solution, direction, width)
-            ahead, onward = path.step(problem, length)
-            if onward is None:
-                length /= 4
-                if length < SHORTEST:
-                    return None, count
-                continue
-            beyond = self._rise(problem, ahead, onward, path.size, width)
-            # The slope of the amplitude changes its sign within this step: Brent's method narrows it.
-            if beyond < 0:
-                peak, spent = self._narrowed(problem, path, ahead, (rise, beyond), length)
-                return peak, count + spent
-            solution, direction, rise = ahead, direction_at(ahead, onward, width), beyond
-            length = min(LONGEST, 2 * length)
-        return None, MOST_STEPS
-
-    def _narrowed(
-        self, problem: Equations, path: PathTangent, ahead: Solution, rises: tuple[float, float], length: float
-    ) -> tuple[_Peak | None, int]:
-        """Return the peak between the ends of a step: a zero of the slope of the amplitude."""
-
-        def rise(part: float) -> tuple[Solution, float]:
-            solution, onward = path.step(problem, part)
-            value = float("nan") if onward is None else self._rise(problem, solution, onward, path.size, path.width)
-            return solution, value
-
-        tried = {0.0: (path.known, rises[0]), length: (ahead, rises[1])}
-        solution = zero_between(rise, length, tried, NARROW)
-        if solution is None:
-            return None, len(tried) - 2
-        amplitude = float(self.size.of(response_of(problem, solution)[self.row]))
-        return _Peak(np.nan, problem, solution, amplitude, (rises[1] - rises[0]) / length), len(tried) - 2
-
-    def _rise(self, problem: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
-        """Derivative of the logarithm of the amplitude along the path."""
-        # ∇a · (dU, dω)/a with dx_l = -Z_ll⁻¹ Z_lq dU + (∂x_l/∂ω) dω
-        series, point = problem.balance(solution.samples).series, solution.condensed
-        change = series.phasors(direction[:-1].reshape(solution.unknowns.shape) * size)
-        retained = series.phasors(solution.unknowns)
-        interior = problem.condensation.interior_slope(point, retained) * (direction[-1] * width)
-        interior = interior - (point.follow @ change[:, :, None])[:, :, 0]
-        motion = response_of(problem, solution)[self.row]
-        moved = series.coefficients(problem.condensation.full(change, interior))[self.row]
-        return float(_gradient(self.size, motion) @ moved) / float(self.size.of(motion))
-
-
-def _gradient(size: Amplitude, motion: np.ndarray) -> np.ndarray:
-    """Derivative of an amplitude by the coefficients; of a peak at its own instant, not at the nearest sample."""
-    if size.kind != "peak":
-        return size.slope(motion)
-    angle = size.instant(motion)
-    orders = np.array([h for h in size.orders for _ in range(1 if h == 0 else 2)])
-    for _ in range(3):
-        waves = synthesis(size.orders, np.array([angle]))[0]
-        # A peak lies at x'(τ) = 0: three steps of Newton from the nearest sample take its instant to rounding.
-        turned = synthesis(size.orders, np.array([angle + 1e-30j]))[0].imag / 1e-30
-        angle -= float(turned @ motion) / float(-(orders**2 * waves) @ motion)
-    waves = synthesis(size.orders, np.array([angle]))[0]
-    return np.sign(waves @ motion) * waves  # of two opposite peaks of one size, the sign of the one at this instant

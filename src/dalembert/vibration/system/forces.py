@@ -167,7 +167,7 @@ class Unbalance(Checked):
         # sin(τ + φ) = sin φ cos τ + cos φ sin τ
         c, s = self.moment * np.cos(self.phase), self.moment * np.sin(self.phase)
         ends = (self.first, c, -s), (self.second, s, c)
-        return [_at(structure, dof, *sizes, 1, _square) for dof, *sizes in ends]
+        return [_at(structure, dof, cosine, sine, 1, _square) for dof, cosine, sine in ends]
 
 
 @dataclass(frozen=True)

@@ -49,11 +49,11 @@ def test_keys_kinds_and_tables(text, typed, first):
         ('[[model.body]]\nname = "a"', {"body", "joint", "load"}),
         ("[model]\ngravity = [0, 0]", {"body", "joint", "load"}),
         ("[model]\nspace = true", {"body", "joint", "load", "robot"}),
-        ('[[model.mass]]\nname = "a"', {"mass", "spring", "force", "contact", "structure"}),
-        ('[model.structure]\nfixed = ["a"]', {"mass", "spring", "force", "contact"}),
+        ('[[model.mass]]\nname = "a"', {"mass", "spring", "rotor", "force", "contact", "structure"}),
+        ('[model.structure]\nfixed = ["a"]', {"mass", "spring", "rotor", "force", "contact"}),
         ('[model]\nfile = "model.toml"', set()),
         ('[model]\nfunction = "model.py:arm"', set()),
-        ("", {"body", "joint", "load", "mass", "spring", "force", "contact", "structure"}),
+        ("", {"body", "joint", "load", "mass", "spring", "rotor", "force", "contact", "structure"}),
     ],
 )
 def test_tables_of_the_kind_of_the_model_are_offered(model, offered):

@@ -152,6 +152,24 @@ def harmonic_content(curve: FrequencyCurve, dof: str, *, title: str | None = Non
     return themed(figure, title or f"Harmonics of {plain(dof)}", 400, x="frequency (Hz)", y=y, showlegend=True)
 
 
+def load_factors(curve: FrequencyCurve, *, title: str = "Factor of the forces") -> go.Figure:
+    """Factor of the varying forces that holds an amplitude, over frequency.
+
+    Parameters
+    ----------
+    curve : FrequencyCurve
+    title : str
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    figure = go.Figure()
+    line = {"color": LIGHT.series[0]}
+    figure.add_scatter(x=curve.frequencies, y=curve.load_factors, mode="lines", line=line, name="factor")
+    return themed(figure, title, 320, x="frequency (Hz)", y={"title": "factor", "rangemode": "tozero"})
+
+
 def points_found(curve: FrequencyCurve, *, title: str = "How the points were found") -> go.Figure:
     """Newton iterations of each point; below, what is left unbalanced and what twice as many samples would change.
 

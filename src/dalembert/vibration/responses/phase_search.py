@@ -1,0 +1,93 @@
+"""Search of the point of a path at which a response has a phase relative to the force."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dalembert.errors import InputError
+from dalembert.vibration.balance.arc_length import PathTangent, direction_at
+from dalembert.vibration.balance.equations import Equations
+from dalembert.vibration.balance.held_response import PhaseHeld, ResponseRow
+from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.paths.amplitudes import Amplitude
+from dalembert.vibration.paths.curve_points import response_of
+from dalembert.vibration.responses.peak_search import FIRST, LONGEST, MOST_STEPS, WIDTH, Peak, upwards
+
+MOST_TURNS, TURNED = 10, 1e-12
+"""Solutions with a phase of the force, and the change of this that counts as none."""
+
+
+@dataclass(frozen=True)
+class PhaseSearch:
+    """Search of the point at which a row of the structure has a phase relative to the force."""
+
+    row: int
+    size: Amplitude
+    phase: float
+
+    def search(self, problem: Equations, solution: Solution, bend: float) -> tuple[Peak | None, int]:
+        """Return the point of that phase next to a solution, and the number of solutions."""
+        solves = 0
+        for near, spent in self._starts(problem, solution):
+            solves += spent
+            locked, spent = self._locked(problem, near)
+            solves += spent
+            if locked is not None:
+                amplitude = float(self.size.of(response_of(problem, locked)[self.row]))
+                return Peak(np.nan, problem, locked, amplitude), solves
+        return None, solves
+
+    def _locked(self, problem: Equations, solution: Solution) -> tuple[Solution | None, int]:
+        """Return the point of that phase by Newton's method, and the number of solutions."""
+        for count in range(1, MOST_TURNS + 1):
+            # The phase of a tabulated force depends on the frequency: again with that of the new one.
+            held = self._held(problem, solution)
+            solution = problem.solve(solution.unknowns, solution.omega, solution.samples, held)
+            # The opposite phase has the same condition.
+            if not solution.converged or solution.omega <= 0 or held.leads(solution.unknowns, solution.condensed):
+                return None, count
+            if abs(self._ahead(problem, solution.omega) - held.ahead) < TURNED:
+                return solution, count
+        return None, MOST_TURNS
+
+    def _starts(self, problem: Equations, solution: Solution) -> Iterator[tuple[Solution, int]]:
+        """Yield the solution itself, then one behind which the phase passes the asked one; with the solutions to it."""
+        yield solution, 0
+        width = WIDTH * solution.omega
+        direction, value = direction_at(solution, upwards(solution), width), self._value(problem, solution)
+        length, turned = FIRST, False
+        for count in range(1, MOST_STEPS + 1):
+            ahead, onward = PathTangent(solution, direction, width).step(problem, length)
+            if onward is None:
+                length /= 4
+                continue
+            beyond = self._value(problem, ahead)
+            if beyond * value <= 0:
+                yield (ahead if abs(beyond) < abs(value) else solution), count
+                return
+            # The phase falls along a path over a resonance: from the first step on, to the side where it comes nearer.
+            if not turned and abs(beyond) > abs(value):
+                direction, turned = -direction, True
+                continue
+            turned = True
+            solution, direction, value = ahead, direction_at(ahead, onward, width), beyond
+            length = min(LONGEST, 2 * length)
+
+    def _value(self, problem: Equations, solution: Solution) -> float:
+        return self._held(problem, solution).distance(solution.unknowns, solution.omega, solution.point)
+
+    def _held(self, problem: Equations, solution: Solution) -> PhaseHeld:
+        series = problem.balance(solution.samples).series
+        size = float(np.linalg.norm(solution.unknowns)) or 1.0
+        ahead = self._ahead(problem, solution.omega)
+        return PhaseHeld(ResponseRow(problem.condensation, series, self.row), ahead, size, WIDTH * solution.omega)
+
+    def _ahead(self, problem: Equations, omega: float) -> complex:
+        """The unit phasor a quarter of a period ahead of the asked phase."""
+        series = problem.balance(problem.method.first_samples).series
+        forces = problem.lowered.loads(series).at(omega)[series.orders.index(1)]
+        force = forces[self.row] or forces[np.abs(forces).argmax()]
+        if not force:
+            raise InputError("track_resonance: no force acts in the first harmonic, so the response has no phase to it")
+        return complex(force / abs(force) * np.exp(1j * (self.phase + np.pi / 2)))

@@ -31,12 +31,12 @@ from dalembert.vibration.responses.resonance_track import ResonanceTrack as Reso
 from dalembert.vibration.responses.static_contact import StaticContact as StaticContact
 from dalembert.vibration.responses.static_contact import static_contact as static_contact
 from dalembert.vibration.stability.floquet import floquet_multipliers as floquet_multipliers
-from dalembert.vibration.system.forces import BaseExcitation as BaseExcitation
-from dalembert.vibration.system.forces import HarmonicForce as HarmonicForce
-from dalembert.vibration.system.forces import StaticForce as StaticForce
-from dalembert.vibration.system.forces import TabulatedForce as TabulatedForce
-from dalembert.vibration.system.forces import Unbalance as Unbalance
+from dalembert.vibration.system.base_excitation import BaseExcitation as BaseExcitation
+from dalembert.vibration.system.harmonic_force import HarmonicForce as HarmonicForce
+from dalembert.vibration.system.harmonic_force import StaticForce as StaticForce
 from dalembert.vibration.system.system import VibrationSystem as VibrationSystem
+from dalembert.vibration.system.tabulated_force import TabulatedForce as TabulatedForce
+from dalembert.vibration.system.unbalance import Unbalance as Unbalance
 from dalembert.vibration.time.comparison import TimeComparison as TimeComparison
 from dalembert.vibration.time.comparison import compare_in_time as compare_in_time
 from dalembert.vibration.time.newmark import Newmark as Newmark

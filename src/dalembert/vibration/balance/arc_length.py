@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Constraint, CrossingPlane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
-from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.condensed_structure import norm
 
 STEADY = 0.9
 """Cosine of the angle between directions of a path, below which a step was too long."""
@@ -167,6 +167,9 @@ class PathTangent:
         sign = _sign(self.known, self.direction, self.width, self.size)
         if not sign:
             return None
+        # Pieces of a piecewise smooth map meet at a kink. On the new one the tangent solves J dU + ∂R/∂ω dω = 0 with
+        # its Jacobian, which holds at any place of the piece: also at one that is no solution (the pivots of piecewise
+        # linear homotopies: Allgower and Georg, Numerical Continuation Methods, 1990, chapter 12).
         for reach in (0.0, *REACHES):
             place = failed if reach == 0.0 else self._ahead(equations, reach * length)
             beyond = self._tangent_of(place, sign)

@@ -20,7 +20,7 @@ import numpy as np
 
 from dalembert.vibration.balance.tangents import BlockTangent, DenseTangent, StiffnessTangent
 from dalembert.vibration.fourier import Fourier, real_blocks
-from dalembert.vibration.interface.condensation import CondensedStructure, norm
+from dalembert.vibration.interface.condensed_structure import CondensedStructure, norm
 from dalembert.vibration.interface.free_motions import HeldByElements
 from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered, law_numbers, penalties
 from dalembert.vibration.laws.contact_sums import ContactSums, Shape, contact_sums

@@ -24,7 +24,7 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from dalembert.vibration.fourier import Fourier, complex_blocks, real_blocks
-from dalembert.vibration.interface.condensation import CondensedStructure
+from dalembert.vibration.interface.condensed_structure import CondensedStructure
 from dalembert.vibration.interface.free_motions import HeldByElements
 
 ACTIVE = 1e-11

@@ -9,7 +9,7 @@ from dalembert.errors import listed
 from dalembert.findings import Finding
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import VERIFIED, Solution
-from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.condensed_structure import norm
 from dalembert.vibration.interface.free_motions import MOVING, NAMED
 
 LEFT = 0.1

@@ -17,7 +17,8 @@ from dalembert.vibration.balance.newton import AnyBalance, Constraint, Point, So
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import DENSE, Condensation, norm
+from dalembert.vibration.interface.condensation import DENSE, Condensation
+from dalembert.vibration.interface.condensed_structure import norm
 from dalembert.vibration.interface.contacts_stuck import ContactsStuck, KnownStructures
 from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
@@ -25,7 +26,7 @@ from dalembert.vibration.interface.modal_damping import couples
 from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.laws.law_block import LawBlock
 from dalembert.vibration.laws.sampled_sums import forces_from_rest
-from dalembert.vibration.system.forces import StaticForce
+from dalembert.vibration.system.harmonic_force import StaticForce
 from dalembert.vibration.system.system import VibrationSystem
 
 SIZES = 10.0 ** np.arange(-9, 7, 3)

@@ -15,7 +15,7 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import AnyBalance, Constraint, Point, Solution, correct, placed
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import CondensedStructure, norm
+from dalembert.vibration.interface.condensed_structure import CondensedStructure, norm
 from dalembert.vibration.interface.lowering import ELASTIC
 from dalembert.vibration.interface.receptances import ReceptancePoint
 

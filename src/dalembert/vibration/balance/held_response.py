@@ -12,7 +12,8 @@ import numpy as np
 
 from dalembert.vibration.balance.newton import Point
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import Condensation, CondensedStructure
+from dalembert.vibration.interface.condensation import Condensation
+from dalembert.vibration.interface.condensed_structure import CondensedStructure
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class ResponseRow:
 
     def phasor(self, unknowns: np.ndarray, point: CondensedStructure) -> complex:
         """X, at unknowns (q, coefficients)."""
+        # X = S (q - i q_s) + T x_l with x_l = Z_ll⁻¹ f_l - Y q: g = S - T Y, b = T Z_ll⁻¹ f_l.
         retained = unknowns[:, self._column] - 1j * unknowns[:, self._column + 1]
         return complex(self._gains(point) @ retained + self._interior @ point.free[self._place])
 
@@ -34,6 +36,7 @@ class ResponseRow:
 
     def by_omega(self, unknowns: np.ndarray, point: CondensedStructure) -> complex:
         """∂X/∂ω where the retained coordinates are held."""
+        # g and b depend on ω by the interior alone: S and T are constant.
         slope = self.condensation.interior_slope(point, self.series.phasors(unknowns))
         return complex(self._interior @ slope[self._place])
 
@@ -81,6 +84,7 @@ class AmplitudeHeld:
     def slope(self, unknowns: np.ndarray, omega: float, point: Point) -> np.ndarray:
         """Return its derivatives by the scaled unknowns and the scaled load."""
         assert isinstance(point, CondensedStructure)
+        # d|X| = Re(dX d̄) with the direction d = X/|X|; where X is zero no direction is better than another.
         phasor = self.response.phasor(unknowns, point)
         direction = phasor / (abs(phasor) or 1.0)
         by_unknowns = self.response.slope(unknowns.shape, direction, point) * (self.size / self.amplitude)

@@ -16,7 +16,7 @@ from dalembert.vibration.balance.balance import Balance, Evaluation
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.balance.tangents import Tangent, bordered
-from dalembert.vibration.interface.condensation import CondensedStructure, norm
+from dalembert.vibration.interface.condensed_structure import CondensedStructure, norm
 from dalembert.vibration.interface.receptances import ReceptancePoint
 
 Point = CondensedStructure | ReceptancePoint
@@ -232,6 +232,7 @@ def _step(at: Solution, plane: Constraint | None) -> tuple[np.ndarray, float] | 
         if plane is not None:
             scales = plane.size, plane.width, at.scale
             top = -residual / at.scale
+            # J dU + ∂R/∂ω dω = -R, bordered by the derivatives of the further equation.
             row = plane.slope(at.unknowns, at.omega, at.point)
             change, turned = bordered(at.tangent, row, scales, top, -at.distance, at.tangent.forcing)
             return change * plane.size, turned * plane.width

@@ -18,7 +18,7 @@ from dalembert.vibration.balance.balance import Evaluation
 from dalembert.vibration.balance.receptance_tangent import ActiveCells, ReceptanceTangent
 from dalembert.vibration.balance.row_elements import Elements
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.condensed_structure import norm
 from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties
 from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.laws.friction_law import SEPARATED, STUCK

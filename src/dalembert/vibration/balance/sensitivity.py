@@ -99,6 +99,7 @@ def _by_receptances(
 
 def _unbalanced(lowered: Lowered, point: Any, motion: np.ndarray) -> np.ndarray:
     """Z' x, (orders, n), from the imaginary parts of the matrices and of the speed of a rotor."""
+    # (Ω N)' and (Ω G)': the speed may depend on the parameter, too.
     speed = lowered.spin(point.omega)[0]
     matrices = {name: matrix for name in MATRICES if (matrix := getattr(lowered.structure, name)) is not None}
     matrices |= {name: speed * matrices[name] for name in ROTATING if name in matrices}

@@ -17,7 +17,7 @@ from dalembert.structure.eigenmodes import real_part
 from dalembert.vibration.balance.newton import line_search
 from dalembert.vibration.balance.row_elements import Elements
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.condensed_structure import norm
 from dalembert.vibration.interface.contacts_stuck import ContactsStuck
 from dalembert.vibration.interface.lowering import Lowered
 

@@ -80,6 +80,7 @@ class Uncondensed:
                 condensation.outer, condensation.across, condensation.below, condensation.inner, strict=True
             )
         )
+        # Forces of a rotor, Ω (G ẋ + N x), add to damping and stiffness: disturbances leave its speed as it is.
         matrices = dict(zip(condensation.kinds, blocks, strict=True))
         stiffness, damping = (
             matrices[name] + self.speed * matrices.get(turning, 0.0)

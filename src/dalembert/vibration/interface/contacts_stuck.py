@@ -14,7 +14,7 @@ from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penal
 from dalembert.vibration.interface.receptances import Receptances
 from dalembert.vibration.interface.stuck_structure import StuckStructure, held, stuck_structure
 from dalembert.vibration.laws.friction_law import GAP, LOAD, NORMAL
-from dalembert.vibration.system.forces import StaticForce
+from dalembert.vibration.system.harmonic_force import StaticForce
 
 ROUNDS = 12
 """Solutions of the static contact, at most. With any reference the equations are correct."""

@@ -8,7 +8,8 @@ import numpy as np
 from dalembert.errors import InputError
 from dalembert.structure import Structure
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.system.forces import Factor, Force, Term
+from dalembert.vibration.system.force_terms import Factor, Term
+from dalembert.vibration.system.forces import Force
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy as np
 
 from dalembert.errors import SolveError
 from dalembert.vibration.fourier import Fourier
-from dalembert.vibration.interface.condensation import NEARLY, norm
+from dalembert.vibration.interface.condensed_structure import NEARLY, norm
 from dalembert.vibration.interface.free_motions import FLOATING
 from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.stuck_structure import StuckStructure

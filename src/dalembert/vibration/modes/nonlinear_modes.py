@@ -33,7 +33,7 @@ from dalembert.vibration.modes.mode_paths import (
 )
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.forces import StaticForce
+from dalembert.vibration.system.harmonic_force import StaticForce
 from dalembert.vibration.system.requirements import positive_numbers, require_still
 from dalembert.vibration.system.system import VibrationSystem
 

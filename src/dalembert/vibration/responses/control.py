@@ -14,7 +14,7 @@ from dalembert.vibration.balance.first_guesses import Loading
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.held_response import AmplitudeHeld, ResponseRow
 from dalembert.vibration.balance.newton import Constraint, Solution
-from dalembert.vibration.interface.condensation import norm
+from dalembert.vibration.interface.condensed_structure import norm
 
 LEAST_LOAD = 1e-3
 """Part of the forces from which a path over them begins."""

@@ -7,8 +7,9 @@ import numpy as np
 from dalembert.argument_readers import numbers_of
 from dalembert.errors import InputError
 from dalembert.structure import Structure
-from dalembert.vibration.system.forces import Force, TabulatedForce
+from dalembert.vibration.system.forces import Force
 from dalembert.vibration.system.system import VibrationSystem
+from dalembert.vibration.system.tabulated_force import TabulatedForce
 
 EDGE = 1e-9
 """Distance of a frequency from the end of a table, as part of it, that is rounding."""

@@ -11,7 +11,8 @@ from dalembert.structure import Structure
 from dalembert.vibration.laws.contacts import FrictionContact, Number
 from dalembert.vibration.laws.element import LawElement
 from dalembert.vibration.laws.user_element import UserElement
-from dalembert.vibration.system.forces import Force, Unbalance
+from dalembert.vibration.system.forces import Force
+from dalembert.vibration.system.unbalance import Unbalance
 
 Element = FrictionContact | LawElement | UserElement
 Part = TypeVar("Part", bound=Force | Element)

@@ -72,8 +72,9 @@ class ConvergedResult(VibrationResult):
 
     @property
     def complete(self) -> bool:
-        """Whether every point is converged, and a path came to its end."""
-        return bool(self.converged.all()) and all(finding.code != "end-not-reached" for finding in self.findings)
+        """Whether every point is converged, and a path came to its end inside its range."""
+        codes = {finding.code for finding in self.findings}
+        return bool(self.converged.all()) and codes.isdisjoint(("end-not-reached", "left-range"))
 
     @property
     def verdict(self) -> str:

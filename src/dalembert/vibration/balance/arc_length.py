@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar, cast
 import numpy as np
 from scipy.optimize import brentq
 
-from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
+from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import Constraint, CrossingPlane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
 from dalembert.vibration.interface.condensed_structure import norm
@@ -95,8 +95,13 @@ def along(
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
         # Behind a corner, such as a contact that opens at once, no shorter step converges: halving would only creep up
-        # to it. The branch behind is sought from its own tangent.
+        # to it. A corner of the samples is elsewhere with more of them. Else the branch behind is sought from its own
+        # tangent.
         if direction is None and step <= SHARP * longest:
+            finer = path.resampled(equations, step)
+            if finer is not None:
+                path = finer
+                continue
             beyond = path.turned(equations, solution, step)
             if beyond is not None:
                 yield PathPoint(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
@@ -156,6 +161,20 @@ class PathTangent:
             return solution, direction_at(solution, self.direction, self.width, self.size)
         except np.linalg.LinAlgError:  # a shorter step may end beside the singular point
             return solution, None
+
+    def resampled(self, equations: PathProblem, length: float) -> "PathTangent | None":
+        """Return the path from the same place with twice the samples; None if a step fails with them, too."""
+        samples, method = 2 * self.known.samples, equations.method
+        if method.samples != AUTO or samples > MOST_SAMPLES:
+            return None
+        known = equations.solve(self.known.unknowns, self.known.omega, samples)
+        if not known.converged:
+            return None
+        try:
+            path = PathTangent(known, direction_at(known, self.direction, self.width), self.width)
+        except np.linalg.LinAlgError:
+            return None
+        return path if path.step(equations, length)[1] is not None else None
 
     def turned(self, equations: PathProblem, failed: Solution, length: float) -> "PathTangent | None":
         """Return the path behind a sharp turn.

@@ -73,8 +73,9 @@ class FrequencyCurve(ConvergedResult):
     findings : tuple of Finding
         ``"unbalanced-mean"``, ``"force-not-finite"``, ``"undamped-resonance"`` or ``"points-not-found"`` where points
         were not found; ``"end-not-reached"`` where a path between two frequencies did not come to the second;
-        ``"few-harmonics"`` or ``"unchecked-harmonics"``; ``"harmonics-chosen"``; ``"stability-near-fold"`` where a fold
-        moves with more harmonics; ``"free-mean-position"`` where nothing holds a mean position.
+        ``"left-range"`` where it has a part outside; ``"few-harmonics"`` or ``"unchecked-harmonics"``;
+        ``"harmonics-chosen"``; ``"stability-near-fold"`` where a fold moves with more harmonics;
+        ``"free-mean-position"`` where nothing holds a mean position.
     """
 
     FORMAT: ClassVar[str] = "dalembert frequency curve 1"

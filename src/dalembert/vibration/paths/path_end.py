@@ -33,3 +33,13 @@ def end_findings(
     values = {"reason": reason, "last": last, "farthest": farthest, "end": end}
     message = f"{how} It does not reach {end:.6g} {unit}."
     return (Finding("end-not-reached", "warning", values, message, ADVICE[reason]),)
+
+
+def left_findings(left: bool, begin: float, what: str, unit: str) -> tuple[Finding, ...]:
+    """Return the finding on a path that leaves its range at its first value and comes back there."""
+    if not left:
+        return ()
+    message = (
+        f"The path leaves the range at {begin:.6g} {unit} ({what}) and comes back there. Its part outside is missing."
+    )
+    return (Finding("left-range", "warning", {"begin": begin}, message, "Begin the range farther outside."),)

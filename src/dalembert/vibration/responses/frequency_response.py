@@ -33,7 +33,7 @@ from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import observed, response_of, restarted
-from dalembert.vibration.paths.path_end import end_findings
+from dalembert.vibration.paths.path_end import end_findings, left_findings
 from dalembert.vibration.responses.control import Controlled, HeldAmplitude
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
@@ -220,6 +220,7 @@ class _FollowedCurve:
     """The points of a curve with a number of harmonics. ``arrays``: those that a curve keeps, by name, (points, ...).
     ``unconverged``: causes, of the points that are not converged. ``across_fold``: frequencies, Hz, of the points whose
     stability is unknown because of a fold. ``largest``: the largest motion, None if it is not to be checked.
+    ``left_range``: whether the path leaves the range and comes back.
     """
 
     equations: Equations
@@ -229,6 +230,7 @@ class _FollowedCurve:
     unconverged: tuple[Unconverged, ...]
     across_fold: tuple[float, ...]
     largest: Solution | None
+    left_range: bool = False
 
 
 def _follow(
@@ -240,19 +242,22 @@ def _follow(
     points = _points(posed, problem, start)
     records, causes, across_fold, done = [], [], [], 0.0
     top: Solution | None = None
+    left_range = False
     for point in judged(problem, points, located=posed.is_path) if stability else points:
         solution = point.solution
         records.append(_record(problem, point, rows))
         causes.append(unconverged(problem, solution))
         across_fold += [float(solution.omega) / (2 * np.pi)] * point.across_fold
         top = largest(top, solution) if check else None
+        left_range |= point.returned
         if posed.on_point is not None:
             done = max(done, _progress(posed, float(solution.omega), len(records)))
             frequency, response = records[-1]["frequencies"], records[-1]["response"]
             posed.on_point(FollowedPoint(frequency, response, dofs, done, problem.method.orders))
     markers = tuple((marker, row) for row, record in enumerate(records) if (marker := record.pop("marker")))
     arrays = {name: np.array([record[name] for record in records]) for name in records[0]}
-    return _FollowedCurve(problem, dofs, arrays, markers, tuple(filter(None, causes)), tuple(across_fold), top)
+    lost = tuple(filter(None, causes))
+    return _FollowedCurve(problem, dofs, arrays, markers, lost, tuple(across_fold), top, left_range)
 
 
 def _points(posed: _PosedCurve, problem: Equations, start: CurvePoint | None) -> Iterator[PathPoint]:
@@ -289,6 +294,7 @@ def _conclude(posed: _PosedCurve, followed: _FollowedCurve) -> FrequencyCurve:
         findings=(
             *unconverged_findings(len(frequencies), followed.unconverged),
             *(end_findings(frequencies, arrays["converged"], limits, "frequency", "Hz") if posed.is_path else ()),
+            *left_findings(followed.left_range, limits[0], "frequency", "Hz"),
             *free_findings(problem),
             *fold_findings(followed.across_fold, frequencies[arrays["fold"]], method.highest),
             *(() if followed.largest is None else truncation_findings(problem, followed.largest)),

@@ -28,6 +28,8 @@ TRUNCATED = 0.15 / (2 * np.pi)
 
 Measured: two masses with a stop and 5 harmonics, whose labels are wrong up to multipliers of exp(0.144).
 """
+SHIFTED = 0.1
+"""Largest real exponent, in parts of ω, whose sign more harmonics or the steps of a map may have changed."""
 FORGOTTEN = 1e-12
 """Multiplier that is zero: what a slider that slips once in a period forgets."""
 
@@ -35,18 +37,27 @@ FORGOTTEN = 1e-12
 @dataclass(frozen=True)
 class Exponents:
     """Floquet exponents of a periodic motion. ``values`` (exponents,), complex: in parts of ω, those that grow fastest
-    first; ``error``: of their real parts, in parts of ω; infinite where it is not known; ``across_fold``: whether a
-    fold lies between the motion and the one with all harmonics, to which the exponents belong.
+    first; ``error``: of their real parts, in parts of ω; infinite where it is not known; ``across_fold``: whether they
+    belong to a motion on the other side of a fold; ``signed``: whether their number of real ones that grow is that of
+    the determinant of the balance.
     """
 
     values: np.ndarray
     error: float = 0.0
     across_fold: bool = False
+    signed: bool = False
 
     @property
     def judged(self) -> bool:
-        """Whether the fastest growth exceeds its error, and belongs to the motion."""
-        return not self.across_fold and bool(abs(np.max(np.real(self.values), initial=-np.inf)) >= self.error)
+        """Whether the sign of the fastest growth is known, and belongs to the motion."""
+        growth = np.real(self.values)
+        if self.across_fold:
+            return False
+        if not growth.size or abs(growth[0]) >= self.error:
+            return True
+        # Next to a fold the fastest exponent is real, and smaller than its error: the determinant has its sign.
+        by_sign = self.signed and bool(real_ones(self.values[:1])[0])
+        return by_sign and bool(growth[0] > 0 or len(growth) == 1 or abs(growth[1]) >= self.error)
 
     @property
     def unstable(self) -> int:
@@ -68,7 +79,7 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTO) -> Expone
         # Hill's matrix lacks the memory of sliders: multipliers of 2.7 for a motion whose largest is 0.94 (three masses
         # with sliders, cubic springs and a stop, at 1.63 rad/s).
         values = _held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
-        return Exponents(values, across_fold=_across_fold(problem, solution, values))
+        return _on_side(problem, solution, values, 0.0)
     values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
     stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
     if not stops or not np.any(solution.evaluation.forces[np.concatenate(stops)]):
@@ -82,18 +93,37 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTO) -> Expone
     if not finer.size:
         return Exponents(values, np.inf)
     finer = _held(problem, finer)
-    return Exponents(finer, _change(values, finer), _across_fold(problem, solution, finer))
+    return _on_side(problem, solution, finer, _change(values, finer))
 
 
-def _across_fold(problem: Equations, solution: Solution, values: np.ndarray) -> bool:
-    r"""Return True if exponents with more harmonics than the balance lie on the other side of a fold. With all
-    harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of disturbances
-    over a period: each real multiplier above 1 changes it.
+def _on_side(problem: Equations, solution: Solution, values: np.ndarray, error: float) -> Exponents:
+    r"""Return exponents on the side of a fold on which the motion is.
+
+    With all harmonics, the determinant of the balance has the sign of :math:`\det(1 - \Phi)`, where Φ is the map of
+    disturbances over a period: each real multiplier above 1 changes it. Exponents with more harmonics than the balance,
+    or by the steps of a map, pass zero at another place. Between both, the real one next to zero has the other sign.
     """
-    # A real multiplier above 1 is an exponent with a whole imaginary part in parts of ω.
-    turns = np.abs(np.imag(values) - np.round(np.imag(values)))
-    growing = int(np.sum((np.real(values) > NEUTRAL) & (turns < REAL)))
-    return bool(_sign(problem, solution) * (-1) ** growing < 0)
+    real = real_ones(values)
+    growing = int(np.sum((np.real(values) > NEUTRAL) & real))
+    sign = _sign(problem, solution)
+    if sign * (-1) ** growing >= 0:
+        return Exponents(values, error, signed=bool(sign))
+    nearest = int(np.argmin(np.where(real, np.abs(np.real(values)), np.inf))) if real.any() else -1
+    if nearest < 0 or abs(np.real(values[nearest])) > SHIFTED:
+        return Exponents(values, error, across_fold=True)
+    turned = values.copy()
+    turned[nearest] = complex(-np.real(values[nearest]), np.imag(values[nearest]))
+    return Exponents(sorted_by_growth(turned), error, signed=True)
+
+
+def real_ones(values: np.ndarray) -> np.ndarray:
+    """Return which exponents have real positive multipliers, (exponents,): whole imaginary parts, in parts of ω."""
+    return np.abs(np.imag(values) - np.round(np.imag(values))) < REAL
+
+
+def sorted_by_growth(values: np.ndarray) -> np.ndarray:
+    """Return exponents, the fastest growing first."""
+    return np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag)))
 
 
 def _sign(problem: Equations, solution: Solution) -> float:
@@ -150,5 +180,4 @@ def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
     system = Uncondensed(problem.lowered, problem.condensation, series, events=False, speed=speed)
     # Exponents from multipliers: the logarithm by 2π, in parts of ω; forgotten states have multiplier zero and none.
     factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
-    values = np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi)
-    return np.array(sorted(values, key=lambda value: (-value.real, abs(value.imag), value.imag)))
+    return sorted_by_growth(np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi))

@@ -1,0 +1,101 @@
+"""A base that moves."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dalembert.arguments import Checked
+from dalembert.errors import InputError
+from dalembert.structure import Structure
+from dalembert.vibration.laws.contacts import Number
+from dalembert.vibration.system.force_terms import Factor, Term, require_varying
+
+AXES = ("x", "y", "z")
+MODAL = "q"
+"""Direction of a coordinate that is a mode."""
+
+
+@dataclass(frozen=True)
+class BaseExcitation(Checked):
+    r"""A base that moves along an axis, :math:`x_b = X \cos(h\omega t + \varphi)`, and carries a structure.
+
+    The displacements of the structure are those relative to the base: it feels the force
+    :math:`-M \iota\, \ddot x_b`, with :math:`\iota` = 1 for the degrees of freedom along the axis. Springs, dampers and
+    contacts to the ground act between the structure and the base.
+
+    Parameters
+    ----------
+    direction : {"x", "y", "z"}
+    displacement : float
+        X, m.
+    acceleration : float
+        Amplitude of the acceleration, m/s², in place of the displacement.
+    phase : float
+        rad.
+    harmonic : int
+
+    Raises
+    ------
+    InputError
+        For both amplitudes, or none; and for a structure with coordinates along no axis, such as modes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import dalembert as da
+    >>> system = da.VibrationSystem(da.lumped({"m": 2.0}, [("m", None, 2.0, 0.2)]))
+    >>> base = system.add(BaseExcitation("x", displacement=0.01))
+    >>> curve = da.frequency_response(system, np.array([1.0]) / (2 * np.pi))
+    >>> float(curve.amplitude("m")[0].round(6))  # X/(2 D) with D = 0.05
+    0.1
+    """
+
+    direction: str
+    displacement: Number = field(default=0.0, metadata={"unit": "m"})
+    acceleration: Number = field(default=0.0, metadata={"unit": "m/s^2"})
+    phase: Number = field(default=0.0, metadata={"unit": "rad"})
+    harmonic: int = 1
+
+    def __post_init__(self) -> None:
+        require_varying(self.where, self.harmonic)
+        if self.direction not in AXES:
+            raise InputError(f"BaseExcitation: direction is {self.direction!r}; expected one of {', '.join(AXES)}")
+        if bool(self.displacement) == bool(self.acceleration):
+            raise InputError(f"{self.where} has {self._amplitudes}; expected one of them")
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """None of the structure: the force acts on all masses."""
+        return ()
+
+    @property
+    def where(self) -> str:
+        """What it is, for messages."""
+        return f"the base excitation along {self.direction!r}"
+
+    @property
+    def _amplitudes(self) -> str:
+        return "both a displacement and an acceleration" if self.displacement else "no displacement and no acceleration"
+
+    def terms(self, structure: Structure) -> list[Term]:
+        """Return its parts on the degrees of freedom of a structure."""
+        names = structure.dofs.names
+        axes = [name.rpartition(".")[2] for name in names]
+        if MODAL in axes:
+            raise InputError(
+                f"{self.where}: the structure has modes as coordinates, {names[axes.index(MODAL)]!r}, whose inertia "
+                "along the axis is not known. Excite the full structure"
+            )
+        moved = np.array([axis == self.direction for axis in axes], dtype=float)
+        if not moved.any():
+            raise InputError(f"{self.where}: no degree of freedom moves along this axis")
+        inertia = np.asarray(structure.mass @ moved)
+        # -M ι ẍ_b: + (hω)² X M ι cos(hτ + φ) of a displacement.
+        size = self.displacement if self.displacement else -self.acceleration
+        c, s = inertia * size * np.cos(self.phase), -inertia * size * np.sin(self.phase)
+        square = _square(self.harmonic) if self.displacement else None
+        return [Term(np.arange(len(names)), c, s, self.harmonic, square)]
+
+
+def _square(harmonic: int) -> Factor:
+    return lambda omega: ((harmonic * omega) ** 2, 2 * harmonic**2 * omega)

@@ -30,6 +30,22 @@ class Term(NamedTuple):
     factor: Factor | None = None
 
 
+class AtDof:
+    """A force on one degree of freedom."""
+
+    dof: str
+
+    @property
+    def dofs(self) -> tuple[str, ...]:
+        """Where it acts."""
+        return (self.dof,)
+
+    @property
+    def where(self) -> str:
+        """What it is, for messages."""
+        return f"the force on {self.dof!r}"
+
+
 def term_at(
     structure: Structure, dof: str, cosine: Number, sine: Number, harmonic: int, factor: Factor | None = None
 ) -> Term:

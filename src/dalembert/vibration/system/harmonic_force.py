@@ -7,11 +7,11 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.structure import Structure
 from dalembert.vibration.laws.contacts import Number
-from dalembert.vibration.system.force_terms import Term, require_varying, term_at
+from dalembert.vibration.system.force_terms import AtDof, Term, require_varying, term_at
 
 
 @dataclass(frozen=True)
-class HarmonicForce(Checked):
+class HarmonicForce(AtDof, Checked):
     """Force amplitude · cos(harmonic · ω t + phase) on a degree of freedom.
 
     Parameters
@@ -33,16 +33,6 @@ class HarmonicForce(Checked):
     def __post_init__(self) -> None:
         require_varying(self.where, self.harmonic)
 
-    @property
-    def dofs(self) -> tuple[str, ...]:
-        """Where it acts."""
-        return (self.dof,)
-
-    @property
-    def where(self) -> str:
-        """What it is, for messages."""
-        return f"the force on {self.dof!r}"
-
     def terms(self, structure: Structure) -> list[Term]:
         """Return its parts on the degrees of freedom of a structure."""
         # a cos(hτ + φ) = a cos φ cos hτ - a sin φ sin hτ
@@ -51,7 +41,7 @@ class HarmonicForce(Checked):
 
 
 @dataclass(frozen=True)
-class StaticForce(Checked):
+class StaticForce(AtDof, Checked):
     """A constant force on a degree of freedom.
 
     Parameters
@@ -63,16 +53,6 @@ class StaticForce(Checked):
 
     dof: str
     value: Number = field(metadata={"unit": "N"})
-
-    @property
-    def dofs(self) -> tuple[str, ...]:
-        """Where it acts."""
-        return (self.dof,)
-
-    @property
-    def where(self) -> str:
-        """What it is, for messages."""
-        return f"the force on {self.dof!r}"
 
     @property
     def harmonic(self) -> int:

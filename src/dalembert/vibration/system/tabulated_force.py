@@ -12,11 +12,11 @@ from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.structure import Structure
 from dalembert.vibration.laws.contacts import Number
-from dalembert.vibration.system.force_terms import Factor, Term, require_varying, term_at
+from dalembert.vibration.system.force_terms import AtDof, Factor, Term, require_varying, term_at
 
 
 @dataclass(frozen=True)
-class TabulatedForce(Checked):
+class TabulatedForce(AtDof, Checked):
     r"""A force whose amplitude and phase depend on the excitation frequency, such as a measured one.
 
     Between the frequencies of the table, :math:`F \cos\varphi` and :math:`F \sin\varphi` are interpolated by piecewise
@@ -68,16 +68,6 @@ class TabulatedForce(Checked):
                 raise InputError(
                     f"{where}: the table has {count} frequencies and {len(values)} {name}; expected as many"
                 )
-
-    @property
-    def dofs(self) -> tuple[str, ...]:
-        """Where it acts."""
-        return (self.dof,)
-
-    @property
-    def where(self) -> str:
-        """What it is, for messages."""
-        return f"the force on {self.dof!r}"
 
     @property
     def range(self) -> tuple[float, float]:

@@ -33,6 +33,7 @@ from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.continuation import across, at_frequencies, natural
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import observed, response_of, restarted
+from dalembert.vibration.paths.motion_findings import open_findings, rotor_findings
 from dalembert.vibration.paths.path_end import end_findings, left_findings
 from dalembert.vibration.responses.control import Controlled, HeldAmplitude
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
@@ -281,7 +282,7 @@ def _progress(posed: _PosedCurve, omega: float, count: int) -> float:
 def _conclude(posed: _PosedCurve, followed: _FollowedCurve) -> FrequencyCurve:
     """Return the curve with the findings on its points, its end, its mean, its stability and its harmonics."""
     problem, arrays = followed.equations, followed.arrays
-    method, frequencies = problem.method, arrays["frequencies"]
+    method, frequencies, converged = problem.method, arrays["frequencies"], arrays["converged"]
     limits = float(posed.omegas[0]) / (2 * np.pi), float(posed.omegas[-1]) / (2 * np.pi)
     return FrequencyCurve(
         dofs=followed.dofs,
@@ -296,6 +297,8 @@ def _conclude(posed: _PosedCurve, followed: _FollowedCurve) -> FrequencyCurve:
             *(end_findings(frequencies, arrays["converged"], limits, "frequency", "Hz") if posed.is_path else ()),
             *left_findings(followed.left_range, limits[0], "frequency", "Hz"),
             *free_findings(problem),
+            *open_findings(problem.lowered, arrays["forces"][converged], arrays["states"][converged]),
+            *rotor_findings(problem.lowered, float(np.max(posed.omegas))),
             *fold_findings(followed.across_fold, frequencies[arrays["fold"]], method.highest),
             *(() if followed.largest is None else truncation_findings(problem, followed.largest)),
         ),

@@ -234,6 +234,7 @@ from dalembert.vibration import backbone as backbone
 from dalembert.vibration import compare_in_time as compare_in_time
 from dalembert.vibration import deformation as deformation
 from dalembert.vibration import floquet_multipliers as floquet_multipliers
+from dalembert.vibration import follow_branch as follow_branch
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
 from dalembert.vibration import law as law

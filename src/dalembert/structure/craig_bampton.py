@@ -15,7 +15,7 @@ from dalembert.results import Summarised
 from dalembert.structure.dofs import Dofs
 from dalembert.structure.eigenmodes import DENSE, all_modes, dense, eigenmodes, lanczos, real_part, similarity
 from dalembert.structure.factorise import factorise
-from dalembert.structure.structure import Matrix, Structure, block, changed
+from dalembert.structure.structure import SYMMETRIC, Structure, block, changed
 from dalembert.tables import Table, cells, counted, percent, shown
 
 NEIGHBOURS = 0.01
@@ -113,7 +113,7 @@ class ReducedStructure(Structure):
 
     Parameters
     ----------
-    mass, stiffness, dofs, damping, nodes, loss, gyroscopic, circulatory
+    mass, stiffness, dofs, damping, nodes, loss, gyroscopic, circulatory, base_inertia
         As of every :class:`Structure`; dense.
     basis : array, shape (n, reduced size)
         The motion of the full structure for each coordinate.
@@ -221,14 +221,13 @@ def craig_bampton(structure: Structure, masters: str | Sequence[str], modes: int
     count = min(modes, len(inner))
     basis = kept_basis(lambda: held_basis(structure, master_rows, inner, count))
 
-    def reduced(matrix: Matrix) -> np.ndarray:
-        small = basis.T @ (matrix @ basis)
-        return (small + small.T) / 2
-
+    matrices = changed(structure, lambda matrix: basis.T @ (matrix @ basis))
+    # Symmetric but for rounding, and then exactly; parts of a rotor are not.
+    matrices |= {name: (matrices[name] + matrices[name].T) / 2 for name in SYMMETRIC if name in matrices}
     names = [structure.dofs.names[row] for row in master_rows] + [f"mode {number}.q" for number in range(1, count + 1)]
     return ReducedStructure(
         dofs=Dofs(tuple(names)), nodes=structure.nodes, basis=basis, full_dofs=structure.dofs,
-        **changed(structure, reduced),
+        base_inertia=basis.T @ structure.inertia_of_base, **matrices,
     )  # fmt: skip
 
 

@@ -51,7 +51,9 @@ def combine(parts: Mapping[str, Structure]) -> Structure:
         return csc_array(block_diag([csc_array(structure) for structure in blocks], format="csc"))
 
     names = tuple(f"{part}/{name}" for part, structure in parts.items() for name in structure.dofs.names)
-    return Structure(dofs=Dofs(names), nodes=_nodes(parts), **{name: joined(name) for name in MATRICES})
+    inertia = np.concatenate([structure.inertia_of_base for structure in structures])
+    matrices = {name: joined(name) for name in MATRICES}
+    return Structure(dofs=Dofs(names), nodes=_nodes(parts), base_inertia=inertia, **matrices)
 
 
 @takes_checked()
@@ -139,7 +141,8 @@ def tie(structure: Structure, joined: Sequence[tuple[str, str]]) -> Structure:
         members = np.array([rows[keeper.get(name, name)] for name in nodes.names], dtype=int)
         cells = (None if rows is None else members[rows] for rows in (nodes.faces, nodes.elements))
         nodes = Nodes(nodes.names, nodes.places, sets, *cells)
-    return replace(structure, dofs=Dofs(names), nodes=nodes, **changed(structure, tied))
+    inertia = ones.T @ structure.inertia_of_base
+    return replace(structure, dofs=Dofs(names), nodes=nodes, base_inertia=inertia, **changed(structure, tied))
 
 
 def _nodes(parts: Mapping[str, Structure]) -> Nodes | None:

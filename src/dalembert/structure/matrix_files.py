@@ -156,13 +156,13 @@ def matrices(path: Path) -> Matrices:
 
 
 def completed(rows: Iterable[int], columns: Iterable[int], values: np.ndarray, size: int) -> csc_array:
-    """A symmetric matrix from entries of which each pair (i, j), (j, i) is given once or twice."""
+    """A matrix from entries; where one of a pair (i, j), (j, i) is missing, it is that of a symmetric matrix."""
     where = (np.asarray(rows), np.asarray(columns))
     entries = csc_array(coo_array((values, where), shape=(size, size)))
     known = csc_array(coo_array((np.ones(len(values)), where), shape=(size, size)))
     known.data[:] = 1.0  # an entry that comes in parts counts once
-    total, times = csc_array(entries + entries.T).tocoo(), csc_array(known + known.T)
-    return csc_array((total.data / times[total.row, total.col], (total.row, total.col)), shape=(size, size))
+    missing = csc_array(known.T - known.T * known)
+    return csc_array(entries + entries.T * missing)
 
 
 def _dof(node: int, direction: int) -> str:

@@ -46,8 +46,9 @@ def read_structure(
     Parameters
     ----------
     path : path, or mapping of str to path
-        One file with all matrices, or files for "mass", "stiffness" and, if there are, "damping" and "loss" (hysteretic
-        damping). The imaginary part of a complex stiffness becomes the loss matrix.
+        One file with all matrices, or files for "mass", "stiffness" and, if there are, "damping", "loss" (hysteretic
+        damping), "gyroscopic" and "circulatory" (of a rotor, with all entries). The imaginary part of a complex
+        stiffness becomes the loss matrix.
     names : mapping of str to str, optional
         Which matrix of the file is which, such as ``{"mass": "MXX"}``; the usual ones (mass, M, MAA, …) are found.
         Without it, a matrix of the same size that is none of these is an error; with it, such a matrix is left out.

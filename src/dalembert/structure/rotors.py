@@ -66,6 +66,8 @@ RotorPart = Disc | RotatingDamper
 def with_rotors(structure: Structure, parts: Sequence[RotorPart]) -> Structure:
     """Return a structure with discs and rotating dampers.
 
+    Damping of other kinds comes before: ``with_damping`` replaces that of the dampers.
+
     Parameters
     ----------
     structure : Structure

@@ -20,6 +20,7 @@ from dalembert.structure.nodes import Nodes
 Matrix = Any
 """A NumPy array or a SciPy sparse array, (n, n), real, or complex with a complex step as its imaginary part."""
 
+AXES = ("x", "y", "z")
 SYMMETRIC = ("mass", "stiffness", "damping", "loss")
 ROTATING = ("gyroscopic", "circulatory")
 """Matrices in proportion to the speed of a rotor."""
@@ -60,6 +61,9 @@ class Structure(Displayed, Checked):
         Hysteretic damping, N/m; none if not given. See :meth:`with_loss` for a loss factor.
     gyroscopic, circulatory : array or sparse array, shape (n, n), optional
         G and N, kg and N s/m where all unknowns are displacements; none if not given. They need no symmetry.
+    base_inertia : array, shape (n, 3), optional
+        Forces on the degrees of freedom by unit accelerations of all of them, and of the clamped ones, along x, y and
+        z, kg. Those of the mass matrix if not given; :meth:`fixed` and a reduction keep them.
 
     Raises
     ------
@@ -83,6 +87,7 @@ class Structure(Displayed, Checked):
     loss: Matrix | None = None
     gyroscopic: Matrix | None = None
     circulatory: Matrix | None = None
+    base_inertia: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         if not self.size:
@@ -112,6 +117,11 @@ class Structure(Displayed, Checked):
                     "expected a symmetric one"
                 )
             _require_direction(matrix, name)
+        if self.base_inertia is not None and np.shape(self.base_inertia) != (self.size, 3):
+            raise InputError(
+                f"Structure: base_inertia has shape {np.shape(self.base_inertia)}; expected {(self.size, 3)}, a row "
+                "for each degree of freedom and a column for each of x, y and z"
+            )
         self._require_positive("mass", "kg")
         if self.loss is not None:
             self._require_positive("loss", "N/m")
@@ -135,6 +145,15 @@ class Structure(Displayed, Checked):
         """Whether a part of it belongs to a rotor."""
         parts = (self.gyroscopic, self.circulatory)
         return any(matrix is not None and abs(matrix).max() > 0 for matrix in parts)
+
+    @property
+    def inertia_of_base(self) -> np.ndarray:
+        """Forces by unit accelerations of all degrees of freedom along x, y and z, kg, (n, 3)."""
+        if self.base_inertia is not None:
+            return self.base_inertia
+        directions = [name.rpartition(".")[2] for name in self.dofs.names]
+        moved = np.array([[direction == axis for axis in AXES] for direction in directions], dtype=float)
+        return np.asarray(self.mass @ moved)
 
     def rows(self, names: str | Sequence[str]) -> list[int]:
         """Rows of degrees of freedom, of all those of nodes, or of all those of sets of nodes.
@@ -169,11 +188,15 @@ class Structure(Displayed, Checked):
         return replace(
             self,
             dofs=Dofs(tuple(self.dofs.names[row] for row in kept)),
+            # Clamped degrees of freedom move with the base, and their mass pulls at the others.
+            base_inertia=self.inertia_of_base[kept],
             **changed(self, lambda matrix: block(matrix, kept)),
         )
 
     def with_damping(self, damping: Rayleigh | Modal | Matrix) -> Structure:
         """Return the structure with another damping.
+
+        It replaces that of rotating dampers, too: :func:`with_rotors` comes last.
 
         Parameters
         ----------

@@ -19,11 +19,12 @@ from dalembert.vibration.paths.curve import FrequencyCurve as FrequencyCurve
 from dalembert.vibration.paths.curve import Peak as Peak
 from dalembert.vibration.paths.deformation import Deformation as Deformation
 from dalembert.vibration.paths.deformation import deformation as deformation
+from dalembert.vibration.responses.branch import follow_branch as follow_branch
 from dalembert.vibration.responses.control import HeldAmplitude as HeldAmplitude
 from dalembert.vibration.responses.curve_family import CurveFamily as CurveFamily
 from dalembert.vibration.responses.curve_family import Envelope as Envelope
+from dalembert.vibration.responses.followed_curve import FollowedPoint as FollowedPoint
 from dalembert.vibration.responses.forward_model import FrequencyResponse as FrequencyResponse
-from dalembert.vibration.responses.frequency_response import FollowedPoint as FollowedPoint
 from dalembert.vibration.responses.frequency_response import frequency_response as frequency_response
 from dalembert.vibration.responses.frequency_responses import frequency_responses as frequency_responses
 from dalembert.vibration.responses.resonance import track_resonance as track_resonance

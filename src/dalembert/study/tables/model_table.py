@@ -72,8 +72,8 @@ class ModelTable(StudyTable):
     mass: list[Any] = []
     spring: list[Any] = []
     rotor: list[Any] = []
-    speed: Annotated[Any, Read(rotor_speed())] = Field(
-        0.0, description="of the rotor parts of a structure: '300 rpm', or 'synchronous' for that of the excitation"
+    speed: Annotated[Any, Read(rotor_speed())] | None = Field(
+        None, description="of the rotor parts of a structure: '300 rpm', or 'synchronous' for that of the excitation"
     )
     force: list[Any] = []
     contact: list[Any] = []

@@ -46,9 +46,9 @@ class StructureBuilder:
         linear = [spring for spring in parts["spring"] if isinstance(spring, LinearSpring)]
         structure = _placed("[[model.rotor]]", with_rotors, self._structure(values, linear), parts["rotor"])
         speed = self.model.speed
-        if not isinstance(speed, str):
+        if speed is not None and not isinstance(speed, str):
             speed = resolved(speed, values, "[model], speed")
-        system = VibrationSystem(structure, speed)
+        system = _placed("[model], speed", VibrationSystem, structure, speed)
         for part in (*parts["force"], *parts["spring"], *parts["contact"]):
             if not isinstance(part, LinearSpring):
                 system.add(part)

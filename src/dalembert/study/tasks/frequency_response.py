@@ -86,7 +86,11 @@ class FrequencyResponseTable(StudyTable):
                 wrong.append(f"the frequency {value:g} Hz was given; expected positive ones")
                 break
         if self.control is not None:
-            refused = {"continuation = 'arc-length'": self.continuation == "arc-length", "stability": self.stability}
+            refused = {
+                "continuation = 'arc-length'": self.continuation == "arc-length",
+                "stability": self.stability,
+                "compare_in_time": self.compare_in_time is not None,
+            }
             wrong += [
                 f"control: a held amplitude does not go with {what}; leave one of them out"
                 for what, present in refused.items()

@@ -23,6 +23,9 @@ SHARP = 1e-3
 """Step, as part of the longest, from which on the path may have a sharp turn."""
 REACHES = (1.0, 4.0, 16.0, 64.0)
 """Steps beyond a sharp turn, in parts of the one that failed before it."""
+CLOSED, JOINED = "closed", "joined"
+AWAY = 4.0
+"""Distance from its first point, in longest steps, from which on a path may come back to it."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
@@ -51,7 +54,9 @@ class PathPoint:
     """A point of a curve. ``fold``: whether the curve turns back here, or where the turn is sharp, just before;
     ``returned``: whether the curve comes back here to the frequencies that were asked for; ``stable``: 1, 0, or -1
     where it is not known; ``marker``: kind of the bifurcation that lies here, or nothing; ``across_fold``: whether
-    stability is not known because a fold lies between the motion and its perturbations.
+    stability is not known because a fold lies between the motion and its perturbations; ``end``: why the path ends
+    here inside its range: "closed" where it comes back to its first point, "joined" where a branch comes to the curve
+    that it left.
     """
 
     solution: Solution
@@ -60,6 +65,7 @@ class PathPoint:
     stable: int = -1
     marker: str = ""
     across_fold: bool = False
+    end: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,9 +82,17 @@ class Progress:
 
 
 def along(
-    equations: PathProblem, begin: float, end: float, start: Solution | None, behind: float = 0.0
+    equations: PathProblem,
+    begin: float,
+    end: float,
+    start: Solution | None,
+    behind: float = 0.0,
+    onward: np.ndarray | None = None,
 ) -> Iterator[PathPoint]:
-    """Points along the curve from one frequency to another, by arc length, with its folds."""
+    """Points along the curve from one frequency to another, by arc length, with its folds. ``onward``: a direction to
+    whose side it begins, (unknowns + 1,); that of the frequencies if not given. A path that comes back to its first
+    point ends there.
+    """
     known = start if start is not None else equations.first(begin)
     yield PathPoint(known)
     if not known.converged:
@@ -88,10 +102,12 @@ def along(
     width = abs(end - begin) / 10
     longest = 10 * equations.method.resolution
     low, high = sorted((begin - behind * (end - begin), end))
-    onward = np.zeros(known.unknowns.size + 1)
-    onward[-1] = np.sign(end - begin)
+    if onward is None:
+        onward = np.zeros(known.unknowns.size + 1)
+        onward[-1] = np.sign(end - begin)
     step, points, progress = longest / 4, 1, Progress(longest)
     path = PathTangent(known, direction_at(known, onward, width), width)
+    first, gone = path, 0.0
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
         # Behind a corner, such as a contact that opens at once, no shorter step converges: halving would only creep up
@@ -125,6 +141,10 @@ def along(
         fold = _fold(equations, path, step) if folds else None
         if fold is not None:
             yield PathPoint(fold, fold=True)
+        gone = max(gone, first.distance(solution))
+        if gone > AWAY * longest and first.meets(solution, direction, step):
+            yield PathPoint(solution, fold=folds and fold is None, end=CLOSED)
+            return
         yield PathPoint(solution, fold=folds and fold is None)
         points += 1
         if progress.ends(step):
@@ -145,6 +165,17 @@ class PathTangent:
     @property
     def size(self) -> float:
         return _size(self.known)
+
+    def distance(self, solution: Solution) -> float:
+        """Return the distance of a point in scaled unknowns."""
+        moved = norm(solution.unknowns - self.known.unknowns) / self.size
+        return float(np.hypot(moved, (solution.omega - self.known.omega) / self.width))
+
+    def meets(self, solution: Solution, direction: np.ndarray | None, length: float) -> bool:
+        """Return True if a step of a length to a point passes here, in the same direction."""
+        return (
+            direction is not None and float(direction @ self.direction) > STEADY and self.distance(solution) <= length
+        )
 
     def step(self, equations: PathProblem, length: float) -> tuple[Solution, np.ndarray | None]:
         """Return the point after a step, and the direction there in the scales of this point; None if not converged."""

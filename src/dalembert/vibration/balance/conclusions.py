@@ -31,7 +31,7 @@ def unconverged(problem: Equations, solution: Solution) -> Unconverged | None:
     """Return the cause if a point is not converged."""
     if solution.converged:
         return None
-    return Unconverged(float(solution.omega) / (2 * np.pi), solution.error, _cause(problem, solution))
+    return Unconverged(problem.hertz(solution.omega), solution.error, _cause(problem, solution))
 
 
 def _cause(problem: Equations, solution: Solution) -> Finding | None:

@@ -51,6 +51,14 @@ class Equations:
         """Whether the structure is written by receptances."""
         return self.method.solver == RECEPTANCE
 
+    def hertz(self, omega: float) -> float:
+        """Return the frequency of the excitation, Hz, at an angular frequency of the motion."""
+        return float(omega) * self.method.periods / (2 * np.pi)
+
+    def omega(self, hertz: float) -> float:
+        """Return the angular frequency of the motion, rad/s, at a frequency of the excitation."""
+        return 2 * np.pi * float(hertz) / self.method.periods
+
     @cached_property
     def condensation(self) -> Condensation:
         """The structure at any frequency, by dynamic stiffnesses."""
@@ -274,7 +282,7 @@ def equations(
     Parts on degrees of freedom that the structure lacks, odd harmonics alone where a force has a mean or even
     harmonics, rigid contacts that depend on each other, and mean forces along a motion that nothing holds are refused.
     """
-    lowered = lower(system).real
+    lowered = replace(lower(system).real, periods=method.periods)
     if method.odd_only:
         _require_symmetry(lowered)
     prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
@@ -320,13 +328,23 @@ def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) ->
 
 
 def by_stiffness(method: HarmonicBalance, where: str) -> HarmonicBalance:
-    """Return the method with dynamic stiffnesses; InputError where receptances are asked for."""
+    """Return the method with dynamic stiffnesses; InputError where receptances or several periods are asked for."""
+    require_one_period(method, where)
     if method.solver == RECEPTANCE:
         raise InputError(
             f"{where}: the solver of the harmonic balance is 'receptance', which only curves and models of responses "
             "take. Use solver='auto'"
         )
     return replace(method, solver=STIFFNESS)
+
+
+def require_one_period(method: HarmonicBalance, where: str) -> None:
+    """Raise InputError for motions of several periods of the excitation."""
+    if method.periods > 1:
+        raise InputError(
+            f"{where}: periods of the harmonic balance is {method.periods}, which only frequency_response and "
+            "follow_branch take. Use periods=1"
+        )
 
 
 RESAMPLED = (1.25, 2.0, 1.5, 4.0)

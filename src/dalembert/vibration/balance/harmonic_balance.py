@@ -12,6 +12,8 @@ SOLVERS = (AUTO, STIFFNESS, RECEPTANCE)
 """Ways to write the structure in the balance."""
 MOST_HARMONICS = 1000
 """Far more than a friction contact needs; their tangents would fill the memory of any machine."""
+MOST_PERIODS = 32
+"""Periods of the excitation in a period of the motion."""
 MOST_GIVEN = 1_000_000
 """Samples of a period, for the same reason."""
 MOST_SAMPLES = 8192
@@ -63,6 +65,9 @@ class HarmonicBalance(Checked):
         computed once: for interfaces of many elastic contacts, without stability. ``"auto"``: receptances where the
         contacts of a curve or a model have more than 500 unknowns, and the structure has more than 1500 degrees of
         freedom or a damping that couples no modes.
+    periods : int
+        Of the excitation in a period of the motion: 1, or more for subharmonic motions. Harmonics and samples are then
+        those of the motion, ``harmonics`` · ``periods`` of them.
 
     Raises
     ------
@@ -101,6 +106,7 @@ class HarmonicBalance(Checked):
     least_harmonics: int = limited(3, least=1, most=MOST_HARMONICS)
     most_harmonics: int = limited(127, least=1, most=MOST_HARMONICS)
     solver: str = AUTO
+    periods: int = limited(1, least=1, most=MOST_PERIODS)
 
     def __post_init__(self) -> None:
         require_known("solver", self.solver, SOLVERS, "HarmonicBalance")
@@ -112,7 +118,11 @@ class HarmonicBalance(Checked):
                 f"{self.least_harmonics}. Raise most_harmonics"
             )
         most = self.most_harmonics if isinstance(self.harmonics, str) else self.harmonics
-        needed = 2 * most + 1
+        needed = 2 * most * self.periods + 1
+        if self.periods > 1 and self.odd_only:
+            raise InputError(
+                "HarmonicBalance: odd_only=True, but a motion of several periods has all harmonics. Use odd_only=False"
+            )
         if isinstance(self.samples, str):
             if self.samples != AUTO:
                 raise InputError(f"HarmonicBalance: samples is {self.samples!r}; expected a number or 'auto'")
@@ -179,10 +189,10 @@ class HarmonicBalance(Checked):
 
     @property
     def orders(self) -> tuple[int, ...]:
-        """The harmonics kept."""
-        return tuple(range(1, self.highest + 1, 2) if self.odd_only else range(self.highest + 1))
+        """The harmonics kept, of the frequency of the motion."""
+        return tuple(range(1, self.highest + 1, 2) if self.odd_only else range(self.highest * self.periods + 1))
 
     @property
     def first_samples(self) -> int:
         """Samples to begin with: a power of two, eight and more for the shortest wave, where they are chosen."""
-        return self.samples if isinstance(self.samples, int) else max(64, 1 << (8 * self.highest - 1).bit_length())
+        return self.samples if isinstance(self.samples, int) else max(64, 1 << (8 * self.orders[-1] - 1).bit_length())

@@ -5,6 +5,7 @@ With the first harmonic of the response :math:`X = g^T U + b`, which is linear i
 period from the unit phasor e.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -98,10 +99,13 @@ class AmplitudeHeld:
 
 @dataclass(frozen=True)
 class PhaseHeld:
-    """The phase of a harmonic, a quarter of a period from a unit phasor; the further unknown is ω."""
+    """The phase of a harmonic relative to that of a force; the further unknown is ω. ``force``: its phasor at ω, and
+    its derivative; ``phase``: rad.
+    """
 
     response: ResponseRow
-    ahead: complex
+    force: Callable[[float], tuple[complex, complex]]
+    phase: float
     size: float
     width: float
 
@@ -109,23 +113,31 @@ class PhaseHeld:
         """Return Re(X ē) / |X|."""
         assert isinstance(point, CondensedStructure)
         phasor = self.response.phasor(unknowns, point)
-        return (phasor * np.conj(self.ahead)).real / (abs(phasor) or 1.0)
+        return (phasor * np.conj(self._ahead(omega)[0])).real / (abs(phasor) or 1.0)
 
-    def leads(self, unknowns: np.ndarray, point: CondensedStructure) -> bool:
+    def leads(self, unknowns: np.ndarray, omega: float, point: CondensedStructure) -> bool:
         """Return True if X is ahead of e, not behind it."""
-        return bool((self.response.phasor(unknowns, point) * np.conj(self.ahead)).imag > 0)
+        return bool((self.response.phasor(unknowns, point) * np.conj(self._ahead(omega)[0])).imag > 0)
 
     def slope(self, unknowns: np.ndarray, omega: float, point: Point) -> np.ndarray:
         """Return its derivatives by the scaled unknowns and the scaled ω."""
         assert isinstance(point, CondensedStructure)
-        response = self.response
+        response, (ahead, ahead_slope) = self.response, self._ahead(omega)
         phasor = response.phasor(unknowns, point)
-        # d (Re(X ē) / |X|) = Re(dX c̄) with c = (e - X Re(X ē) / |X|²) / |X|.
+        # d (Re(X ē) / |X|) = Re(dX c̄) + Re(X ē') / |X| with c = (e - X Re(X ē) / |X|²) / |X|.
         size = abs(phasor) or 1.0
-        along = (self.ahead - phasor * (phasor * np.conj(self.ahead)).real / size**2) / size
+        along = (ahead - phasor * (phasor * np.conj(ahead)).real / size**2) / size
         by_omega = (np.conj(along) * response.by_omega(unknowns, point)).real
+        by_omega += (phasor * np.conj(ahead_slope)).real / size
         return np.append(response.slope(unknowns.shape, along, point) * self.size, by_omega * self.width)
 
     def numbers(self) -> list[np.ndarray]:
-        """Return all that it depends on."""
-        return [np.array([self.response.row, self.ahead.real, self.ahead.imag, self.size, self.width])]
+        """Return all that it depends on, beside the system."""
+        return [np.array([self.response.row, self.phase, self.size, self.width])]
+
+    def _ahead(self, omega: float) -> tuple[complex, complex]:
+        """The unit phasor e a quarter of a period ahead of the asked phase, and its derivative by ω."""
+        force, slope = self.force(omega)
+        ahead = force / abs(force) * np.exp(1j * (self.phase + np.pi / 2))
+        # d(F/|F|) = i Im(dF/F) F/|F|
+        return ahead, 1j * (slope / force).imag * ahead

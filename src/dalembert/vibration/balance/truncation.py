@@ -214,7 +214,7 @@ def truncation(problem: Equations, solution: Solution, least: float = 0.0, afres
     what = "truncation" if afresh else "truncation from here"
     change, size = problem.once(what, solution, lambda: np.array(_change(problem, solution, afresh))).tolist()
     heavy = carries_mass(problem, solution.omega)
-    return Truncation(float(solution.omega) / (2 * np.pi), SLOW * change / (max(size, least) or 1.0), heavy)
+    return Truncation(problem.hertz(solution.omega), SLOW * change / (max(size, least) or 1.0), heavy)
 
 
 def carries_mass(problem: Equations, omega: float) -> bool:

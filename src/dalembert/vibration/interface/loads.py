@@ -37,28 +37,45 @@ class Loads:
         return self.constant if not self.factors else np.tensordot(self.weights(omega)[0], self.patterns, 1)
 
 
-def loads(forces: Sequence[Force], structure: Structure, series: Fourier) -> Loads:
-    """Return the forces on a structure, real."""
-    terms = _terms(forces, structure, series)
+def loads(forces: Sequence[Force], structure: Structure, series: Fourier, periods: int = 1) -> Loads:
+    """Return the forces on a structure, real. ``periods``: of the excitation in a period of the series."""
+    terms = _terms(forces, structure, series, periods)
     varying = [term for term in terms if term.factor is not None]
     groups = [[term for term in terms if term.factor is None], *([term] for term in varying)]
     patterns = [series.phasors(np.real(_summed(group, structure.size, series))) for group in groups]
     return Loads(np.stack(patterns), tuple(term.factor for term in varying if term.factor is not None))
 
 
-def load_coefficients(forces: Sequence[Force], structure: Structure, series: Fourier, omega: float) -> np.ndarray:
-    """Return the coefficients of the forces at ω (n, coefficients), complex where their numbers are."""
-    return _summed(_terms(forces, structure, series), structure.size, series, omega)
+def load_coefficients(
+    forces: Sequence[Force], structure: Structure, series: Fourier, omega: float, periods: int = 1
+) -> np.ndarray:
+    """Return the coefficients of the forces at ω of the series (n, coefficients), complex where their numbers are."""
+    return _summed(_terms(forces, structure, series, periods), structure.size, series, omega)
 
 
-def _terms(forces: Sequence[Force], structure: Structure, series: Fourier) -> list[Term]:
+def _terms(forces: Sequence[Force], structure: Structure, series: Fourier, periods: int) -> list[Term]:
+    """Parts of forces in the harmonics of a series, with factors over the frequency of the series."""
     for force in forces:
-        if force.harmonic not in series.orders:
+        if periods * force.harmonic not in series.orders:
+            kept = [order // periods for order in series.orders if order % periods == 0]
             raise InputError(
                 f"{force.where} acts in harmonic {force.harmonic}, which is not among the harmonics kept "
-                f"({', '.join(map(str, series.orders))}); keep more of them"
+                f"({', '.join(map(str, kept))}); keep more of them"
             )
-    return [term for force in forces for term in force.terms(structure)]
+    terms = [term for force in forces for term in force.terms(structure)]
+    return terms if periods == 1 else [_slower(term, periods) for term in terms]
+
+
+def _slower(term: Term, periods: int) -> Term:
+    """The same where the excitation has several periods in one of the series."""
+    factor = term.factor
+
+    def slower(omega: float) -> tuple[float, float]:
+        assert factor is not None
+        value, slope = factor(periods * omega)
+        return value, periods * slope
+
+    return term._replace(harmonic=periods * term.harmonic, factor=None if factor is None else slower)
 
 
 def _summed(terms: Sequence[Term], size: int, series: Fourier, omega: float | None = None) -> np.ndarray:

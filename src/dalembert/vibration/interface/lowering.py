@@ -70,7 +70,8 @@ def law_numbers(block: FrictionBlock) -> np.ndarray:
 class Lowered:
     """A vibrating system as arrays. ``row_names``: names of the coordinates that elements see, such as ``"foot.x"``;
     ``matrix`` (rows, n); ``contacts``: names of the friction contacts; ``functions``: rows of each element whose law is
-    a function of arrays; ``speed``: of the rotor parts, rad/s, or "synchronous".
+    a function of arrays; ``speed``: of the rotor parts, rad/s, or "synchronous";
+    ``periods``: of the excitation in a period of the motion.
     """
 
     structure: Structure
@@ -82,6 +83,7 @@ class Lowered:
     laws: tuple[LawBlock, ...]
     functions: tuple[tuple[np.ndarray, UserElement], ...]
     speed: complex | str = 0.0
+    periods: int = 1
 
     @cached_property
     def coordinates(self) -> Coordinates:
@@ -99,15 +101,15 @@ class Lowered:
 
     def loads(self, series: Fourier) -> Loads:
         """Forces over the excitation frequency, real."""
-        return loads(self.forces, self.structure, series)
+        return loads(self.forces, self.structure, series, self.periods)
 
     def load_coefficients(self, series: Fourier, omega: float) -> np.ndarray:
         """Coefficients of the forces on all degrees of freedom at ω, (n, coefficients)."""
-        return load_coefficients(self.forces, self.structure, series, omega)
+        return load_coefficients(self.forces, self.structure, series, omega, self.periods)
 
     def spin(self, omega: float) -> tuple[Any, float]:
-        """Speed of the rotor at an excitation frequency, both in rad/s, and its derivative by that."""
-        return (omega, 1.0) if self.speed == SYNCHRONOUS else (self.speed, 0.0)
+        """Speed of the rotor at a frequency of the motion, both in rad/s, and its derivative by that."""
+        return (self.periods * omega, self.periods) if self.speed == SYNCHRONOUS else (self.speed, 0.0)
 
     @property
     def real(self) -> "Lowered":
@@ -120,9 +122,14 @@ class Lowered:
         structure = self.structure
         digest = hashlib.sha256(repr((*more, method)).encode())
         names = structure.dofs.names, self.row_names, self.contacts
-        digest.update(repr((*names, self.forces, self.speed)).encode())
-        matrices = [matrix for name in MATRICES if (matrix := getattr(structure, name)) is not None]
-        for matrix in (*matrices, self.matrix):
+        digest.update(repr((*names, self.forces, self.speed, self.periods)).encode())
+        matrices = {name: getattr(structure, name) for name in MATRICES} | {"rows": self.matrix}
+        if structure.base_inertia is not None:
+            digest.update(structure.base_inertia.tobytes())
+        for name, matrix in matrices.items():
+            if matrix is None:
+                continue
+            digest.update(name.encode())
             digest.update(np.asarray(matrix @ np.linspace(0.5, 1.5, structure.size)).tobytes())
         for block in self.blocks:
             digest.update(repr((block.kind, block.tangents, block.normal)).encode() + block.numbers.tobytes())

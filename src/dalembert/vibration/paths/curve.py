@@ -78,7 +78,7 @@ class FrequencyCurve(ConvergedResult):
         ``"free-mean-position"`` where nothing holds a mean position.
     """
 
-    FORMAT: ClassVar[str] = "dalembert frequency curve 1"
+    FORMAT: ClassVar[str] = "dalembert frequency curve 2"
     TITLE: ClassVar[str] = "Forced response"
 
     dofs: tuple[str, ...]

@@ -32,7 +32,7 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
             f"system has {problem.balance(samples).shape} and {orders}; "
             "start from a curve of the same system"
         )
-    return problem.solve(unknowns, 2 * np.pi * float(curve.frequencies[point]), samples)
+    return problem.solve(unknowns, problem.omega(curve.frequencies[point]), samples)
 
 
 def _in_unknowns_of(problem: Equations, curve: FrequencyCurve, unknowns: np.ndarray) -> np.ndarray:
@@ -48,6 +48,15 @@ def _in_unknowns_of(problem: Equations, curve: FrequencyCurve, unknowns: np.ndar
     return unknowns
 
 
+def require_full_load(curve: FrequencyCurve, where: str) -> None:
+    """Raise InputError for a curve whose amplitude is held, which the forces of the system do not cause."""
+    if "control" in curve.provenance:
+        raise InputError(
+            f"{where}: the curve has a held amplitude, so that its forces are not those of the system. Compute a curve "
+            "without control"
+        )
+
+
 def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
     """Return the rows of the observed degrees of freedom: those named, or all, or those with forces and elements."""
     structure = lowered.structure
@@ -56,7 +65,8 @@ def observed(lowered: Lowered, names: Sequence[str] | None) -> np.ndarray:
     if structure.size <= ALL:
         return np.arange(structure.size)
     forced = [structure.dofs.index(dof) for force in lowered.forces for dof in force.dofs]
-    return np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
+    rows = np.unique([*forced, *lowered.matrix.nonzero()[1]]).astype(int)
+    return rows if len(rows) else np.arange(structure.size)
 
 
 def response_of(problem: Equations, solution: Solution, dofs: np.ndarray | None = None) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The motion of a whole structure at one point of a curve, and what its contacts do there, to be drawn."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -152,8 +152,9 @@ def _largest(curve: FrequencyCurve) -> int:
 @single_thread()
 def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.ndarray:
     """Coefficients of all degrees of freedom, (size, coefficients), from the unknowns that the curve keeps."""
-    lowered, highest = lower(system).real, 2 * np.pi * float(np.max(curve.frequencies))
     method = HarmonicBalance(**curve.provenance["method"])
+    lowered = replace(lower(system).real, periods=method.periods)
+    highest = 2 * np.pi * float(np.max(curve.frequencies)) / method.periods
     problem = Equations(lowered, method, _stuck=ContactsStuck(lowered, highest))
     balance, unknowns = problem.balance(int(curve.samples[point])), curve.unknowns[point]
     if unknowns.shape != balance.shape or curve.contacts != problem.lowered.contacts:
@@ -161,4 +162,7 @@ def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.
             f"deformation: the curve has unknowns of shape {unknowns.shape} and {len(curve.contacts)} contacts; the "
             f"system has {balance.shape} and {len(problem.lowered.contacts)}; give the system of the curve"
         )
-    return problem.motion(problem.at(2 * np.pi * float(curve.frequencies[point])), unknowns, int(curve.samples[point]))
+    place = problem.at(problem.omega(curve.frequencies[point]))
+    if "control" in curve.provenance:
+        place = place.loaded(float(curve.load_factors[point]))
+    return problem.motion(place, unknowns, int(curve.samples[point]))

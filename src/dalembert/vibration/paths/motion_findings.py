@@ -11,7 +11,7 @@ from dalembert.vibration.interface.lowering import Lowered
 
 NAMED = 4
 """Elements that a message names."""
-LARGE = 600
+LARGE = 200
 """Degrees of freedom above which the modes of a rotor are not computed."""
 
 
@@ -41,7 +41,7 @@ def open_findings(lowered: Lowered, forces: np.ndarray, states: np.ndarray) -> t
 def rotor_findings(lowered: Lowered, omega: float) -> tuple[Finding, ...]:
     """Return the finding on a rotor that is unstable without its contacts and springs, at the highest frequency ω."""
     structure, speed = lowered.structure, lowered.spin(omega)[0]
-    if not structure.rotates or not speed or structure.size > LARGE:
+    if not structure.rotates or not speed or structure.loss is not None or structure.size > LARGE:
         return ()
     damping = 0 * structure.stiffness if structure.damping is None else structure.damping
     # Ω (G ẋ + N x) belongs to damping and stiffness while the speed is constant.
@@ -56,11 +56,12 @@ def rotor_findings(lowered: Lowered, omega: float) -> tuple[Finding, ...]:
         return ()
     if modes.growth <= 0:
         return ()
-    growing = modes.roots[np.argmax(modes.roots.real)] if len(modes.roots) else 0.0
-    hertz = abs(float(np.imag(growing))) / (2 * np.pi)
+    growing = modes.roots[np.isclose(np.real(modes.roots), modes.growth, rtol=1e-9)]
+    hertz = float(np.imag(growing[0])) / (2 * np.pi) if len(growing) else 0.0
+    motion = f"a whirl of {hertz:.4g} Hz" if len(growing) else "a motion without oscillation"
     message = (
-        f"At {speed:.6g} rad/s the rotor is unstable without its contacts and springs: a whirl of {hertz:.4g} Hz grows "
-        f"by {modes.growth:.3g} 1/s."
+        f"At {speed:.6g} rad/s the rotor is unstable without its contacts and springs: {motion} grows by "
+        f"{modes.growth:.3g} 1/s."
     )
     advice = "Add damping of the bearings, or lower the speed. With stability=True each point is judged."
     values = {"speed": float(speed), "frequency": hertz, "growth": modes.growth}

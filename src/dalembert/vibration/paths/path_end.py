@@ -7,22 +7,29 @@ from dalembert.findings import Finding
 ADVICE = {
     "fold": "The response beyond is on another branch. Give single values there in place of two ends.",
     "stopped": "Use more harmonics or smaller steps, or start behind this place.",
+    "closed": "The path is an isolated branch. Other branches of the range are not on it.",
+    "joined": "Behind this place it is the same branch again, or the curve.",
     "no-progress": "Use more harmonics or samples, or events=True, so that the path has no sharp turns.",
 }
 """What to do, by the reason."""
 
 
 def end_findings(
-    places: np.ndarray, converged: np.ndarray, ends: tuple[float, float], what: str, unit: str
+    places: np.ndarray, converged: np.ndarray, ends: tuple[float, float], what: str, unit: str, end_inside: str = ""
 ) -> tuple[Finding, ...]:
     """Return the finding on a path that did not reach its end. ``places`` (points,): values of what the path leads
-    over, in its order; ``converged`` (points,); ``what``, ``unit``: of the values.
+    over, in its order; ``converged`` (points,); ``what``, ``unit``: of the values; ``end_inside``: the reason of an end
+    inside the range, if it has one.
     """
     (begin, end), last = ends, float(places[-1])
     if np.isclose(last, end, rtol=1e-12, atol=0.0):  # a point that was not found there has its finding
         return ()
     where = f"{last:.6g} {unit} ({what})"
-    if (last - begin) * np.sign(end - begin) <= 0 and len(places) > 1:
+    if end_inside == "closed":
+        reason, how = end_inside, f"The path is closed: it comes back to its first point at {where}."
+    elif end_inside:
+        reason, how = end_inside, f"The branch comes back to the curve at {where}."
+    elif (last - begin) * np.sign(end - begin) <= 0 and len(places) > 1:
         reason, how = "fold", f"The path passes a fold and leaves the range at {where}."
     elif not converged[-1]:
         reason, how = "stopped", f"The path stops at {where}: no further point was found."

@@ -26,7 +26,7 @@ class HeldAmplitude(Checked):
     """A response that a controller holds: the amplitude of the first harmonic of a degree of freedom.
 
     All forces but static ones are scaled by one factor, which is an unknown of each frequency. Curves of held
-    displacements have no folds where those of held forces have some.
+    displacements often have no folds where those of held forces have some.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class HeldAmplitude(Checked):
     >>> frequencies = np.array([0.15, 0.2])
     >>> curve = da.frequency_response(system, frequencies, da.HarmonicBalance(5), control=HeldAmplitude("m", 2.0))
     >>> curve.amplitude("m", "harmonic 1").round(6).tolist(), curve.load_factors.round(2).tolist()
-    ([2.0, 2.0], [0.85, 0.65])
+    ([2.0, 2.0], [0.85, 0.61])
     """
 
     dof: str
@@ -66,6 +66,10 @@ class Controlled:
         row = problem.lowered.structure.dofs.index(held.dof, "HeldAmplitude")
         series = problem.balance(problem.method.first_samples).series
         self._amplitude, self._response = held.amplitude, ResponseRow(problem.condensation, series, row)
+        if not np.any(problem.lowered.loads(series).patterns[:, series.orders.index(1)]):
+            raise InputError(
+                "HeldAmplitude: no force acts in the first harmonic, so none holds its amplitude. Add a HarmonicForce"
+            )
         signs = [[(-1.0) ** order] * (1 if order == 0 else 2) for order in series.orders]
         self._later = np.concatenate(signs)
 

@@ -19,7 +19,7 @@ from dalembert.parameter import Parameter
 from dalembert.parameters import Parameters
 from dalembert.threads import single_thread
 from dalembert.units import unit_of
-from dalembert.vibration.balance.equations import Equations, chosen_solver, equations
+from dalembert.vibration.balance.equations import Equations, chosen_solver, equations, require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.balance.sensitivity import STEP, sensitivities
@@ -239,6 +239,7 @@ class FrequencyResponse:
         return model
 
     def _equations(self, system: VibrationSystem, derivatives: bool = False) -> Equations:
+        require_one_period(self.balance, "FrequencyResponse")
         require_forces(system.forces, self.frequencies, "FrequencyResponse")
         highest = 2 * np.pi * float(np.max(self.frequencies))
         return equations(system, self.balance, derivatives=derivatives, highest=highest, known=self._known)

@@ -21,7 +21,8 @@ from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.responses.curve_family import CurveFamily
-from dalembert.vibration.responses.frequency_response import FollowedPoint, frequency_response
+from dalembert.vibration.responses.followed_curve import FollowedPoint
+from dalembert.vibration.responses.frequency_response import frequency_response
 from dalembert.vibration.system.requirements import values_of
 from dalembert.vibration.system.system import VibrationSystem
 

@@ -1,6 +1,6 @@
 """Search of the point of a path at which a response has a phase relative to the force."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +10,10 @@ from dalembert.vibration.balance.arc_length import PathTangent, direction_at
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.held_response import PhaseHeld, ResponseRow
 from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.paths.amplitudes import Amplitude
 from dalembert.vibration.paths.curve_points import response_of
 from dalembert.vibration.responses.peak_search import FIRST, LONGEST, MOST_STEPS, WIDTH, Peak, upwards
-
-MOST_TURNS, TURNED = 10, 1e-12
-"""Solutions with a phase of the force, and the change of this that counts as none."""
 
 
 @dataclass(frozen=True)
@@ -31,25 +29,19 @@ class PhaseSearch:
         solves = 0
         for near, spent in self._starts(problem, solution):
             solves += spent
-            locked, spent = self._locked(problem, near)
-            solves += spent
+            locked, solves = self._locked(problem, near), solves + 1
             if locked is not None:
                 amplitude = float(self.size.of(response_of(problem, locked)[self.row]))
                 return Peak(np.nan, problem, locked, amplitude), solves
         return None, solves
 
-    def _locked(self, problem: Equations, solution: Solution) -> tuple[Solution | None, int]:
-        """Return the point of that phase by Newton's method, and the number of solutions."""
-        for count in range(1, MOST_TURNS + 1):
-            # The phase of a tabulated force depends on the frequency: again with that of the new one.
-            held = self._held(problem, solution)
-            solution = problem.solve(solution.unknowns, solution.omega, solution.samples, held)
-            # The opposite phase has the same condition.
-            if not solution.converged or solution.omega <= 0 or held.leads(solution.unknowns, solution.condensed):
-                return None, count
-            if abs(self._ahead(problem, solution.omega) - held.ahead) < TURNED:
-                return solution, count
-        return None, MOST_TURNS
+    def _locked(self, problem: Equations, solution: Solution) -> Solution | None:
+        """Return the point of that phase by Newton's method from a solution."""
+        held = self._held(problem, solution)
+        solution = problem.solve(solution.unknowns, solution.omega, solution.samples, held)
+        # The opposite phase has the same condition.
+        opposite = held.leads(solution.unknowns, solution.omega, solution.condensed)
+        return solution if solution.converged and solution.omega > 0 and not opposite else None
 
     def _starts(self, problem: Equations, solution: Solution) -> Iterator[tuple[Solution, int]]:
         """Yield the solution itself, then one behind which the phase passes the asked one; with the solutions to it."""
@@ -79,15 +71,20 @@ class PhaseSearch:
 
     def _held(self, problem: Equations, solution: Solution) -> PhaseHeld:
         series = problem.balance(solution.samples).series
+        response = ResponseRow(problem.condensation, series, self.row)
         size = float(np.linalg.norm(solution.unknowns)) or 1.0
-        ahead = self._ahead(problem, solution.omega)
-        return PhaseHeld(ResponseRow(problem.condensation, series, self.row), ahead, size, WIDTH * solution.omega)
+        return PhaseHeld(response, self._force(problem, series), self.phase, size, WIDTH * solution.omega)
 
-    def _ahead(self, problem: Equations, omega: float) -> complex:
-        """The unit phasor a quarter of a period ahead of the asked phase."""
-        series = problem.balance(problem.method.first_samples).series
-        forces = problem.lowered.loads(series).at(omega)[series.orders.index(1)]
-        force = forces[self.row] or forces[np.abs(forces).argmax()]
-        if not force:
+    def _force(self, problem: Equations, series: Fourier) -> Callable[[float], tuple[complex, complex]]:
+        """Return the first harmonic of the force on the row, else of the largest one, over ω."""
+        loads, place = problem.lowered.loads(series), series.orders.index(1)
+        sizes = np.abs(loads.patterns[:, place]).max(axis=0)
+        row = self.row if sizes[self.row] else int(sizes.argmax())
+        if not sizes[row]:
             raise InputError("track_resonance: no force acts in the first harmonic, so the response has no phase to it")
-        return complex(force / abs(force) * np.exp(1j * (self.phase + np.pi / 2)))
+
+        def force(omega: float) -> tuple[complex, complex]:
+            values, slopes = (weights @ loads.patterns[:, place, row] for weights in loads.weights(omega))
+            return complex(values), complex(slopes)
+
+        return force

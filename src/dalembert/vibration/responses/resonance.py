@@ -27,12 +27,13 @@ from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import restarted
-from dalembert.vibration.responses.frequency_response import ARC_LENGTH, frequency_response
+from dalembert.vibration.responses.followed_curve import ARC_LENGTH
+from dalembert.vibration.responses.frequency_response import frequency_response
 from dalembert.vibration.responses.peak_search import WIDTH, Peak, PeakSearch, upwards
 from dalembert.vibration.responses.phase_search import PhaseSearch
 from dalembert.vibration.responses.resonance_track import ResonanceTrack
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.requirements import values_of
+from dalembert.vibration.system.requirements import require_forces, values_of
 from dalembert.vibration.system.system import VibrationSystem
 
 
@@ -119,6 +120,9 @@ def track_resonance(
     posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, phase, checkpoint)
     curve, level, spent = _first_curve(posed, first, start)
     level, peaks, findings = _follow(posed, curve, level)
+    places = [peak.solution.omega / (2 * np.pi) for peak, _ in peaks if peak is not None]
+    if places:
+        require_forces(first.forces, np.array(places), "track_resonance")
     solves = np.array([count for _, count in peaks])
     solves[0] += spent
     return ResonanceTrack(

@@ -10,7 +10,7 @@ from dalembert.threads import single_thread
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import STIFFNESS, HarmonicBalance
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.curve_points import restarted
+from dalembert.vibration.paths.curve_points import require_full_load, restarted
 from dalembert.vibration.stability.stability import AUTO, HILL, TIME_MAP, exponents
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -56,6 +56,7 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     (0.513417, 0.513417)
     """
     require_known("way", way, (AUTO, HILL, TIME_MAP), "floquet_multipliers")
+    require_full_load(curve, "floquet_multipliers")
     method = replace(HarmonicBalance(**curve.provenance["method"]), solver=STIFFNESS)
     problem = equations(system, method, stability=way != HILL)
     begin = restarted(problem, curve, point, "floquet_multipliers")

@@ -56,8 +56,8 @@ class Exponents:
         if not growth.size or abs(growth[0]) >= self.error:
             return True
         # Next to a fold the fastest exponent is real, and smaller than its error: the determinant has its sign.
-        by_sign = self.signed and bool(real_ones(self.values[:1])[0])
-        return by_sign and bool(growth[0] > 0 or len(growth) == 1 or abs(growth[1]) >= self.error)
+        within = np.abs(growth) < self.error
+        return self.signed and int(within.sum()) == 1 and bool(real_ones(self.values[:1])[0])
 
     @property
     def unstable(self) -> int:

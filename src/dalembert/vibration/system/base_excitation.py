@@ -7,12 +7,9 @@ import numpy as np
 from dalembert.arguments import Checked
 from dalembert.errors import InputError
 from dalembert.structure import Structure
+from dalembert.structure.structure import AXES
 from dalembert.vibration.laws.contacts import Number
 from dalembert.vibration.system.force_terms import Factor, Term, require_varying
-
-AXES = ("x", "y", "z")
-MODAL = "q"
-"""Direction of a coordinate that is a mode."""
 
 
 @dataclass(frozen=True)
@@ -31,13 +28,13 @@ class BaseExcitation(Checked):
     acceleration : float
         Amplitude of the acceleration, m/s², in place of the displacement.
     phase : float
-        rad.
+        rad, of the displacement or the acceleration that is stated.
     harmonic : int
 
     Raises
     ------
     InputError
-        For both amplitudes, or none; and for a structure with coordinates along no axis, such as modes.
+        For both amplitudes, or none; and for a structure without mass along the axis.
 
     Examples
     --------
@@ -51,8 +48,8 @@ class BaseExcitation(Checked):
     """
 
     direction: str
-    displacement: Number = field(default=0.0, metadata={"unit": "m"})
-    acceleration: Number = field(default=0.0, metadata={"unit": "m/s^2"})
+    displacement: Number | None = field(default=None, metadata={"unit": "m"})
+    acceleration: Number | None = field(default=None, metadata={"unit": "m/s^2"})
     phase: Number = field(default=0.0, metadata={"unit": "rad"})
     harmonic: int = 1
 
@@ -60,7 +57,7 @@ class BaseExcitation(Checked):
         require_varying(self.where, self.harmonic)
         if self.direction not in AXES:
             raise InputError(f"BaseExcitation: direction is {self.direction!r}; expected one of {', '.join(AXES)}")
-        if bool(self.displacement) == bool(self.acceleration):
+        if (self.displacement is None) == (self.acceleration is None):
             raise InputError(f"{self.where} has {self._amplitudes}; expected one of them")
 
     @property
@@ -75,25 +72,20 @@ class BaseExcitation(Checked):
 
     @property
     def _amplitudes(self) -> str:
-        return "both a displacement and an acceleration" if self.displacement else "no displacement and no acceleration"
+        both = self.displacement is not None
+        return "both a displacement and an acceleration" if both else "no displacement and no acceleration"
 
     def terms(self, structure: Structure) -> list[Term]:
         """Return its parts on the degrees of freedom of a structure."""
         names = structure.dofs.names
-        axes = [name.rpartition(".")[2] for name in names]
-        if MODAL in axes:
-            raise InputError(
-                f"{self.where}: the structure has modes as coordinates, {names[axes.index(MODAL)]!r}, whose inertia "
-                "along the axis is not known. Excite the full structure"
-            )
-        moved = np.array([axis == self.direction for axis in axes], dtype=float)
-        if not moved.any():
-            raise InputError(f"{self.where}: no degree of freedom moves along this axis")
-        inertia = np.asarray(structure.mass @ moved)
+        inertia = structure.inertia_of_base[:, AXES.index(self.direction)]
+        if not np.any(inertia):
+            raise InputError(f"{self.where}: no degree of freedom with a mass moves along this axis")
         # -M ι ẍ_b: + (hω)² X M ι cos(hτ + φ) of a displacement.
-        size = self.displacement if self.displacement else -self.acceleration
+        size, square = (
+            (self.displacement, _square(self.harmonic)) if self.acceleration is None else (-self.acceleration, None)
+        )
         c, s = inertia * size * np.cos(self.phase), -inertia * size * np.sin(self.phase)
-        square = _square(self.harmonic) if self.displacement else None
         return [Term(np.arange(len(names)), c, s, self.harmonic, square)]
 
 

@@ -45,8 +45,8 @@ def require_still(system: VibrationSystem, where: str) -> None:
     """Raise InputError for a rotor that turns."""
     if system.structure.rotates and system.speed:
         raise InputError(
-            f"{where}: the structure has a rotor that turns, which only responses over frequency take. Leave out its "
-            "discs and rotating dampers, or use frequency_response"
+            f"{where}: the structure has a rotor that turns, which only responses over frequency take. Use "
+            "frequency_response"
         )
 
 

@@ -26,17 +26,19 @@ class VibrationSystem(Displayed):
     Parameters
     ----------
     structure : Structure
-    speed : float or "synchronous"
-        Of the rotor parts of the structure, rad/s: a constant one, or that of the excitation, Ω = ω.
+    speed : float or "synchronous", optional
+        Of the rotor parts of the structure, rad/s: a constant one, or that of the excitation, Ω = ω. A structure with
+        such parts needs it.
 
     Raises
     ------
     InputError
-        For anything else than a structure, or a speed that is no number.
+        For anything else than a structure, a speed that is no number, and a rotor without a speed.
 
     Examples
     --------
     >>> from dalembert.structure import lumped
+    >>> from dalembert.vibration import HarmonicForce
     >>> system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.04)]))
     >>> force = system.add(HarmonicForce("m", 1.0))
     >>> damper = system.add(FrictionContact("damper", "m", friction=0.5, preload=2.0))
@@ -44,12 +46,18 @@ class VibrationSystem(Displayed):
     ['damper']
     """
 
-    def __init__(self, structure: Structure, speed: Number | str = 0.0) -> None:
+    def __init__(self, structure: Structure, speed: Number | str | None = None) -> None:
         if not isinstance(structure, Structure):
             raise InputError(
                 f"VibrationSystem: structure is {shown(structure)}; expected a Structure, such as lumped(...) or "
                 "Structure(mass, stiffness, dofs)"
             )
+        if speed is None and structure.rotates:
+            raise InputError(
+                f"VibrationSystem: the structure has a rotor. Give its speed in rad/s, or speed={SYNCHRONOUS!r} for "
+                "that of the excitation"
+            )
+        speed = 0.0 if speed is None else speed
         if speed != SYNCHRONOUS and not is_number(speed):
             raise InputError(
                 f"VibrationSystem: speed is {shown(speed)}; expected a number in rad/s, or {SYNCHRONOUS!r} for the "
@@ -68,7 +76,8 @@ class VibrationSystem(Displayed):
     def add(self, part: Part) -> Part:
         """Add a force, a contact or a spring, and hand it back."""
         if isinstance(part, Force):
-            if isinstance(part, Unbalance) and self.speed != SYNCHRONOUS and np.real(self.speed):
+            constant = self.speed != SYNCHRONOUS and (np.real(self.speed) or self.structure.rotates)
+            if isinstance(part, Unbalance) and constant:
                 raise InputError(
                     f"{part.where} turns with the rotor, and the speed of the system is {self.speed:g} rad/s. Use "
                     f"speed={SYNCHRONOUS!r}"

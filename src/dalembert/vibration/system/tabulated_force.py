@@ -55,6 +55,8 @@ class TabulatedForce(AtDof, Checked):
         require_varying(where, self.harmonic)
         for name in ("frequencies", "amplitudes", "phases"):
             numbers = numbers_of(getattr(self, name), where, name)
+            if not np.all(np.isfinite(numbers)):
+                raise InputError(f"{where}: the {name} of the table are not all finite numbers")
             object.__setattr__(self, name, tuple(numbers.ravel().tolist()))
         count = len(self.frequencies)
         if count < 2 or self.frequencies[0] <= 0 or np.any(np.diff(self.frequencies) <= 0):

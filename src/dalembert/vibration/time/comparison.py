@@ -13,9 +13,11 @@ from dalembert.forward import Checkpoint, ensemble
 from dalembert.tables import Table, cells, counted, labelled, noted, percent, unless
 from dalembert.threads import single_thread
 from dalembert.units import unit_of
+from dalembert.vibration.balance.equations import require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.curve import FrequencyCurve
+from dalembert.vibration.paths.curve_points import require_full_load
 from dalembert.vibration.paths.focus import foremost
 from dalembert.vibration.storage import Over, VibrationResult
 from dalembert.vibration.system.system import VibrationSystem
@@ -169,6 +171,8 @@ def compare_in_time(
     >>> comparison.dofs, comparison.balance.round(3).tolist(), comparison.time.round(3).tolist()
     (('m.x',), [[6.841]], [[6.842]])
     """
+    require_full_load(curve, "compare_in_time")
+    require_one_period(HarmonicBalance(**curve.provenance["method"]), "compare_in_time")
     method, chosen = method or Newmark(), _chosen(curve, points, frequencies, kind)
     known = ""
     if checkpoint is not None:

@@ -72,7 +72,7 @@ def spectral(lowered: Lowered, omega: float) -> Spectral:
     if circulatory is not None and speed and abs(circulatory).max() > 0:
         raise ModelError(
             "the structure has circulatory forces, such as those of damping that turns with a rotor, which motions in "
-            "time do not take here. Leave them out, or use frequency_response"
+            "time do not take here. Use frequency_response"
         )
     if structure.gyroscopic is not None:
         damping = damping + speed * np.real(dense(structure.gyroscopic))

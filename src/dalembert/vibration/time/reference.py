@@ -11,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, SolveError, require_known
 from dalembert.threads import single_thread
-from dalembert.vibration.balance.equations import equations
+from dalembert.vibration.balance.equations import equations, require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.preparation import balance_kernels, prepare_together
 from dalembert.vibration.fourier import Fourier, synthesis
@@ -219,7 +219,9 @@ class _Run:
 
     def on_curve(self, system: VibrationSystem, curve: FrequencyCurve, point: int) -> ModalState:
         """On a point of a curve, with sliders as its motion moves them."""
-        balance = equations(system, HarmonicBalance(**curve.provenance["method"]))
+        method = HarmonicBalance(**curve.provenance["method"])
+        require_one_period(method, "steady_state")
+        balance = equations(system, method)
         x = response_of(balance, restarted(balance, curve, point, "steady_state"))
         steps = self.method.steps_per_period
         waves = synthesis(curve.orders, 2 * np.pi * np.arange(1, steps + 1) / steps)

@@ -114,3 +114,45 @@ def test_another_phase_of_an_interior_degree_of_freedom():
 def test_a_phase_is_relative_to_a_force():
     with pytest.raises(InputError, match=says("track_resonance: phase is nan; expected a number in rad")):
         track_resonance(duffing, "force", [0.1], (0.1, 0.3), METHOD, dof="m", phase=float("nan"))
+
+
+def test_what_else_takes_the_force_of_a_held_amplitude():
+    curve = frequency_response(pair(), np.array([0.1]), METHOD, control=HeldAmplitude("a", 0.5))
+    words = ": the curve has a held amplitude, so that its forces are not those of the system. Compute a curve without control"
+    with pytest.raises(InputError, match=says(f"floquet_multipliers{words}")):
+        da.floquet_multipliers(pair(), curve, 0)
+    with pytest.raises(InputError, match=says(f"compare_in_time{words}")):
+        da.compare_in_time(pair(), curve)
+
+
+def test_no_amplitude_is_held_without_a_varying_force():
+    system = VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
+    system.add(da.StaticForce("m", 1.0))
+    words = "HeldAmplitude: no force acts in the first harmonic, so none holds its amplitude. Add a HarmonicForce"
+    with pytest.raises(InputError, match=says(words)):
+        frequency_response(system, np.array([0.1]), METHOD, control=HeldAmplitude("m", 1.0))
+
+
+@pytest.mark.parametrize("delay", [0.1, 2.0, 4.0])
+def test_the_phase_of_a_tabulated_force_depends_on_the_frequency(delay):
+    def build(level: float) -> VibrationSystem:
+        system = VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.2)]))
+        f = np.linspace(0.05, 0.4, 200)
+        system.add(da.TabulatedForce("m", f, np.ones_like(f), -delay * 2 * np.pi * f, scale=level))
+        return system
+
+    track = track_resonance(
+        build, "level", [1.0], (0.1, 0.25), HarmonicBalance(1), dof="m", kind="harmonic 1", phase=-np.pi / 2
+    )
+    # The phase is relative to the force, whatever its delay: the undamped frequency.
+    assert track.frequencies[0] == pytest.approx(1 / (2 * np.pi), rel=1e-6)
+
+
+def test_a_track_that_leaves_the_table_of_a_force_is_refused():
+    def build(stiffness: float) -> VibrationSystem:
+        system = VibrationSystem(da.lumped({"m": 1.0}, [("m", None, stiffness, 0.1)]))
+        system.add(da.TabulatedForce("m", [0.05, 0.2], [1.0, 2.0]))
+        return system
+
+    with pytest.raises(InputError, match=r"the table of the force on 'm' from 0\.05 to 0\.2 Hz"):
+        track_resonance(build, "stiffness", [1.0, 4.0], (0.1, 0.19), HarmonicBalance(1), dof="m")

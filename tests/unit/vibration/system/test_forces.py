@@ -1,6 +1,7 @@
 """Forces that depend on the frequency, base excitation, and rotors: slopes, derivatives, messages."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -59,7 +60,7 @@ def test_a_linear_system_answers_as_its_matrices_do(speed, sparse, monkeypatch):
         monkeypatch.setattr("dalembert.vibration.interface.condensation.DENSE", 1)
         parts = ("mass", "stiffness", "damping", "gyroscopic", "circulatory")
         structure = replace(structure, **{name: csc_array(getattr(structure, name)) for name in parts})
-    parts = [part for part in EVERY if speed != 7.0 or not isinstance(part, da.Unbalance)]
+    parts = [part for part in EVERY if speed == "synchronous" or not isinstance(part, da.Unbalance)]
     system = loaded(structure, *parts, da.CubicSpring("c", "n4.x", stiffness=1e-9), speed=speed)
     omega = 7.3
     curve = frequency_response(system, np.array([omega]) / (2 * np.pi), METHOD)
@@ -68,7 +69,7 @@ def test_a_linear_system_answers_as_its_matrices_do(speed, sparse, monkeypatch):
     base = dense.mass.sum(axis=1)
     f = omega / (2 * np.pi)
     first = 0.05 * omega**2 * base * np.exp(0.2j)
-    first += np.eye(6)[0] + (speed != 7.0) * 0.1 * omega**2 * np.exp(0.4j) * (np.eye(6)[2] - 1j * np.eye(6)[3])
+    first += np.eye(6)[0] + (speed == "synchronous") * 0.1 * omega**2 * np.exp(0.4j) * (np.eye(6)[2] - 1j * np.eye(6)[3])
     first += (1 + f**2) * np.exp(0.3j * f) * np.eye(6)[1]
     for order, load in ((1, first), (2, -0.5 * base)):
         s = order * omega
@@ -134,7 +135,7 @@ def test_derivatives_by_the_parameters_of_a_rotor_and_its_forces():
     ("parts", "message"),
     [
         ((table(), da.CubicSpring("c", "n4.x", stiffness=1.0)), "frequency_response: the frequencies reach from 0.4 to 0.4 Hz, and the table of the force on 'n1.x' from 0.5 to 3 Hz. Extend the table, or ask for frequencies inside it"),
-        ((da.BaseExcitation("y", displacement=1.0),), "the base excitation along 'y': no degree of freedom moves along this axis"),
+        ((da.BaseExcitation("y", displacement=1.0),), "the base excitation along 'y': no degree of freedom with a mass moves along this axis"),
         ((da.HarmonicForce("n0.x", 1.0, harmonic=9),), "the force on 'n0.x' acts in harmonic 9, which is not among the harmonics kept (0, 1, 2, 3); keep more of them"),
     ],
 )  # fmt: skip
@@ -169,7 +170,7 @@ def test_a_rotor_that_turns_is_refused_where_it_has_no_meaning():
     with pytest.raises(
         InputError,
         match=says(
-            "backbone: the structure has a rotor that turns, which only responses over frequency take. Leave out its discs and rotating dampers, or use frequency_response"
+            "backbone: the structure has a rotor that turns, which only responses over frequency take. Use frequency_response"
         ),
     ):
         da.backbone(system, np.array([1.0]))
@@ -183,19 +184,54 @@ def test_a_rotor_that_turns_is_refused_where_it_has_no_meaning():
     with pytest.raises(
         da.ModelError,
         match=says(
-            "the structure has circulatory forces, such as those of damping that turns with a rotor, which motions in time do not take here. Leave them out, or use frequency_response"
+            "the structure has circulatory forces, such as those of damping that turns with a rotor, which motions in time do not take here. Use frequency_response"
         ),
     ):
         da.steady_state(system, 1.0)
 
 
-def test_the_inertia_of_a_reduced_structure_along_an_axis_is_not_known():
-    chain = lumped({f"n{k}": 1.0 for k in range(5)}, [(f"n{k}", f"n{k + 1}", 1.0, 0.1) for k in range(4)])
-    reduced = craig_bampton(replace(chain, stiffness=chain.stiffness + np.eye(5)), ["n0"], 2)
-    with pytest.raises(
-        InputError,
-        match=says(
-            "the base excitation along 'x': the structure has modes as coordinates, 'mode 1.q', whose inertia along the axis is not known. Excite the full structure"
-        ),
-    ):
-        frequency_response(loaded(reduced, da.BaseExcitation("x", displacement=1.0)), np.array([1.0]), METHOD)
+def test_a_clamped_and_reduced_structure_has_the_inertia_of_the_whole():
+    # A consistent mass couples clamped degrees of freedom, and all modes of a reduction are as good as the structure.
+    count, coupling = 6, 0.3
+    mass = np.eye(count) + coupling * (np.eye(count, k=1) + np.eye(count, k=-1))
+    stiffness = 50.0 * (2 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1))
+    names = tuple(f"n{k}.x" for k in range(count))
+    whole = Structure(mass, stiffness, Dofs(names), 0.01 * stiffness)
+    free = whole.fixed(["n0"])
+    frequencies, base = np.array([0.3, 0.7]), da.BaseExcitation("x", acceleration=1.0)
+    curve = frequency_response(loaded(free, base), frequencies, METHOD)
+    for point, omega in enumerate(2 * np.pi * frequencies):
+        dynamic = free.stiffness - omega**2 * free.mass + 1j * omega * free.damping
+        exact = np.linalg.solve(dynamic, -mass.sum(axis=1)[1:])
+        np.testing.assert_allclose(curve.response[point, :, 1] - 1j * curve.response[point, :, 2], exact, rtol=1e-9)
+    reduced = craig_bampton(free, ["n1", "n5"], 3)
+    again = frequency_response(loaded(reduced, base), frequencies, METHOD, observe=["n1", "n5"])
+    np.testing.assert_allclose(again.response, curve.response[:, [0, 4]], atol=1e-9)
+
+
+def test_a_reduction_keeps_the_parts_of_a_rotor():
+    structure = rotor()
+    reduced = craig_bampton(structure, ["n0", "n1"], 4)
+    np.testing.assert_allclose(reduced.gyroscopic, reduced.basis.T @ structure.gyroscopic @ reduced.basis)
+    system = loaded(structure, da.HarmonicForce("n0.x", 1.0))
+    small = loaded(reduced, da.HarmonicForce("n0.x", 1.0))
+    curves = [frequency_response(each, np.array([1.1]), METHOD, observe=["n0", "n1"]) for each in (system, small)]
+    np.testing.assert_allclose(curves[0].response, curves[1].response, atol=1e-9)
+
+
+def test_a_rotor_needs_a_speed():
+    words = (
+        "VibrationSystem: the structure has a rotor. Give its speed in rad/s, or speed='synchronous' for that of the "
+        "excitation"
+    )
+    with pytest.raises(InputError, match=says(words)):
+        VibrationSystem(rotor())
+
+
+def test_a_large_structure_under_base_excitation_is_observed_whole():
+    names = [f"m{k}" for k in range(70)]
+    springs = [("m0", None, 900.0, 1.0), *((a, b, 900.0, 1.0) for a, b in pairwise(names))]
+    system = VibrationSystem(lumped(dict.fromkeys(names, 1.0), springs))
+    system.add(da.BaseExcitation("x", displacement=0.0))
+    system.add(da.BaseExcitation("x", displacement=1.0))
+    assert frequency_response(system, np.array([0.1]), METHOD).response.shape == (1, 70, 7)

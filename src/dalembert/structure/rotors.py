@@ -9,7 +9,7 @@ from scipy.sparse import csc_array, issparse
 
 from dalembert.arguments import Checked, takes_checked
 from dalembert.errors import InputError
-from dalembert.structure.structure import Matrix, Structure
+from dalembert.structure.structure import Structure
 
 Number = float | complex
 
@@ -94,7 +94,14 @@ def with_rotors(structure: Structure, parts: Sequence[RotorPart]) -> Structure:
         else:
             added.setdefault("damping", []).extend([(row, row, part.damping) for row in (first, second)])
             added.setdefault("circulatory", []).extend(_turning(first, second, part.damping))
-    return replace(structure, **{name: _with(structure, name, entries) for name, entries in added.items()})
+    matrices: dict[str, Any] = {}
+    for name, entries in added.items():
+        left, right = (np.array([entry[side] for entry in entries]).T for side in (0, 1))
+        sizes, before = np.array([size for *_, size in entries]), getattr(structure, name)
+        if issparse(structure.mass):
+            left, right = csc_array(left), csc_array(right)
+        matrices[name] = (0.0 * structure.mass if before is None else before) + (left * sizes) @ right.T
+    return replace(structure, **matrices)
 
 
 def _turning(first: np.ndarray, second: np.ndarray, size: Number) -> list[tuple[np.ndarray, np.ndarray, Number]]:
@@ -112,13 +119,3 @@ def _row(structure: Structure, part: RotorPart, number: int) -> np.ndarray:
     if isinstance(part, RotatingDamper) and part.other is not None:
         result[structure.dofs.index(part.other[number], where)] -= 1.0
     return result
-
-
-def _with(structure: Structure, name: str, entries: list[tuple[np.ndarray, np.ndarray, Number]]) -> Matrix:
-    before: Any = getattr(structure, name)
-    before = 0.0 * structure.mass if before is None else before
-    left, right = (np.array([entry[side] for entry in entries]).T for side in (0, 1))
-    sizes = np.array([size for *_, size in entries])
-    if issparse(structure.mass):
-        return csc_array(before + (csc_array(left) * sizes) @ csc_array(right).T)
-    return before + (left * sizes) @ right.T

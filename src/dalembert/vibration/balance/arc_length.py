@@ -142,7 +142,8 @@ def along(
         if fold is not None:
             yield PathPoint(fold, fold=True)
         gone = max(gone, first.distance(solution))
-        if gone > AWAY * longest and first.meets(solution, direction, step):
+        passes = first.distance(solution) <= step and direction is not None
+        if gone > AWAY * longest and passes and float(direction @ first.direction) > STEADY:
             yield PathPoint(solution, fold=folds and fold is None, end=CLOSED)
             return
         yield PathPoint(solution, fold=folds and fold is None)
@@ -170,12 +171,6 @@ class PathTangent:
         """Return the distance of a point in scaled unknowns."""
         moved = norm(solution.unknowns - self.known.unknowns) / self.size
         return float(np.hypot(moved, (solution.omega - self.known.omega) / self.width))
-
-    def meets(self, solution: Solution, direction: np.ndarray | None, length: float) -> bool:
-        """Return True if a step of a length to a point passes here, in the same direction."""
-        return (
-            direction is not None and float(direction @ self.direction) > STEADY and self.distance(solution) <= length
-        )
 
     def step(self, equations: PathProblem, length: float) -> tuple[Solution, np.ndarray | None]:
         """Return the point after a step, and the direction there in the scales of this point; None if not converged."""

@@ -91,18 +91,23 @@ class Condensation:
         # Z_q = Z_qq - Z_ql Y, F_q = f_q - X f_l, and for the derivatives by ω
         # Z_q' = Z_qq' - Z_ql' Y - X Z_lq' + X Z_ll' Y, F_q' = f_q' - X f_l' - Z_ql' Z_ll⁻¹ f_l + X Z_ll' Z_ll⁻¹ f_l.
         follow, free = solved[:, :, :-1], solved[:, :, -1]
-        passed = np.swapaxes(follow if self._symmetric else self._transposed(s, across, inner), 1, 2)
+        passed = np.swapaxes(follow, 1, 2)
+        if not self._symmetric:
+            # Xᵀ = Z_ll⁻ᵀ Z_qlᵀ
+            turned: Any = [csc_array(matrix.T) for matrix in inner] if isinstance(inner, list) else inner
+            turned = np.swapaxes(turned, 1, 2) if np.ndim(turned) == 3 else turned
+            passed = np.swapaxes(self.solve(s, np.swapaxes(across, 1, 2), turned), 1, 2)
         moved = _times(inner_slope[0], solved) if inner_slope else self._inner_slope(s, solved, spin)
         crossed = across_slope @ solved
         force_slope = (passed @ moved[:, :, -1:])[:, :, 0] - crossed[:, :, -1]
         if self._loads.factors:
             force_slope += outer_loads_slope - (passed @ inner_loads_slope[:, :, None])[:, :, 0]
-        turned = np.swapaxes(crossed[:, :, :-1], 1, 2) if self._symmetric else passed @ below_slope
+        crossed_back = np.swapaxes(crossed[:, :, :-1], 1, 2) if self._symmetric else passed @ below_slope
         return CondensedStructure(
             omega=omega,
             frequencies=s,
             stiffness=outer - across @ follow,
-            slope=outer_slope - crossed[:, :, :-1] - turned + passed @ moved[:, :, :-1],
+            slope=outer_slope - crossed[:, :, :-1] - crossed_back + passed @ moved[:, :, :-1],
             force=outer_loads - (passed @ inner_loads[:, :, None])[:, :, 0],
             force_slope=force_slope,
             follow=follow,
@@ -191,14 +196,6 @@ class Condensation:
             return np.linalg.solve(inner, right)
         except (RuntimeError, np.linalg.LinAlgError):
             raise _resonance(s, "") from None
-
-    def _transposed(self, s: np.ndarray, across: np.ndarray, inner: Any) -> np.ndarray:
-        """Z_ll⁻ᵀ Z_qlᵀ, (orders, l, q)."""
-        if isinstance(inner, list):
-            turned: Any = [csc_array(matrix.T) for matrix in inner]
-        else:
-            turned = inner if inner.ndim == 2 else np.swapaxes(inner, 1, 2)
-        return self.solve(s, np.swapaxes(across, 1, 2), turned)
 
     @cached_property
     def _resonant(self) -> np.ndarray:

@@ -100,25 +100,19 @@ def follow_branch(
     kind, point = points[number]
     known = HarmonicBalance(**curve.provenance["method"])
     method = replace(known, odd_only=False, solver=STIFFNESS, periods=known.periods * (2 if kind == DOUBLING else 1))
-    problem = equations(system, method, stability=stability)
-    at = _at_bifurcation(equations(system, known), problem, curve, point)
-    start = _beside(problem, at)
+    problem, before = equations(system, method, stability=stability), equations(system, known)
+    # The motion at the bifurcation, with the harmonics of the branch.
+    ratio = method.periods // known.periods
+    motion = restarted(before, curve, point, "follow_branch")
+    unknowns = in_orders(motion.unknowns, tuple(ratio * order for order in known.orders), method.orders)
+    samples = max(method.first_samples, ratio * motion.samples)
+    start = _beside(problem, problem.solve(unknowns, motion.omega / ratio, samples))
     ends = between or (float(np.nanmin(curve.frequencies)), float(np.nanmax(curve.frequencies)))
     low, high = sorted(positive_numbers(tuple(ends), "follow_branch", "frequencies", "Hz").tolist())
     omegas = np.array([problem.omega(low), problem.omega(high)])
     settings = {"continuation": ARC_LENGTH, "frequencies": [low, high], "branch": kind}
     posed = PosedCurve(system, omegas, True, settings, observe, None, stability, None, None, branch=start)
     return conclude(posed, follow(posed, problem, None, stability, check))
-
-
-def _at_bifurcation(before: Equations, problem: Equations, curve: FrequencyCurve, point: int) -> Solution:
-    """Return the motion at the bifurcation, with the harmonics of the branch."""
-    known = restarted(before, curve, point, "follow_branch")
-    ratio = problem.method.periods // before.method.periods
-    orders = tuple(ratio * order for order in before.method.orders)
-    unknowns = in_orders(known.unknowns, orders, problem.method.orders)
-    samples = max(problem.method.first_samples, ratio * known.samples)
-    return problem.solve(unknowns, known.omega / ratio, samples)
 
 
 def _beside(problem: Equations, at: Solution) -> BranchStart:

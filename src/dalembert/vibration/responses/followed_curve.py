@@ -71,12 +71,12 @@ CurvePoint = tuple[FrequencyCurve, int]
 
 @dataclass(frozen=True)
 class BranchStart:
-    """A motion of a branch beside another curve; ``onward``: a direction from there, in scaled unknowns; ``broken``
+    """A motion of a branch beside another curve; ``heading``: a direction from there, in scaled unknowns; ``broken``
     (q, coefficients): which coefficients are zero on the other curve.
     """
 
     start: Solution
-    onward: np.ndarray
+    heading: np.ndarray
     broken: np.ndarray
 
 
@@ -175,8 +175,8 @@ def until_joined(points: Iterator[PathPoint], broken: np.ndarray) -> Iterator[Pa
 
 def _points(posed: PosedCurve, problem: Equations, start: CurvePoint | None) -> Iterator[PathPoint]:
     if posed.branch is not None:
-        begin, onward = posed.branch.start, posed.branch.onward
-        path = along(problem, float(posed.omegas[0]), float(posed.omegas[1]), begin, onward=onward)
+        begin, heading = posed.branch.start, posed.branch.heading
+        path = along(problem, float(posed.omegas[0]), float(posed.omegas[1]), begin, onward=heading)
         return until_joined(path, posed.branch.broken)
     known = None if start is None else restarted(problem, *start, "frequency_response")
     if start is not None and start[0].orders != problem.method.orders and known is not None and not known.converged:

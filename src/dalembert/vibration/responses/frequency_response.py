@@ -24,7 +24,6 @@ from dalembert.vibration.responses.control import HeldAmplitude
 from dalembert.vibration.responses.followed_curve import (
     ARC_LENGTH,
     NATURAL,
-    CurvePoint,
     OnPoint,
     PosedCurve,
     conclude,
@@ -128,7 +127,14 @@ def frequency_response(
     method = method or HarmonicBalance()
     omegas = 2 * np.pi * places / method.periods
     if control is not None:
-        _require_control(continuation, start, stability, method)
+        refused = {
+            "continuation='arc-length'": continuation == ARC_LENGTH,
+            "a start": start is not None,
+            "stability=True": stability,
+            "harmonics='auto'": method.automatic,
+        }
+        for what in (what for what, present in refused.items() if present):
+            raise InputError(f"frequency_response: a held amplitude was asked for with {what}. Leave one of them out")
         settings["control"] = asdict(control)
         method, check = by_stiffness(method, "frequency_response with a held amplitude"), False
     posed = PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point, control)
@@ -136,19 +142,6 @@ def frequency_response(
     if method.automatic:
         return _refine(posed, method)
     return conclude(posed, follow(posed, posed.equations(method), start, stability, check))
-
-
-def _require_control(continuation: str, start: CurvePoint | None, stability: bool, method: HarmonicBalance) -> None:
-    """Refuse what a held amplitude does not take."""
-    refused = {
-        "continuation='arc-length'": continuation == ARC_LENGTH,
-        "a start": start is not None,
-        "stability=True": stability,
-        "harmonics='auto'": method.automatic,
-    }
-    for what, present in refused.items():
-        if present:
-            raise InputError(f"frequency_response: a held amplitude was asked for with {what}. Leave one of them out")
 
 
 def _refine(posed: PosedCurve, method: HarmonicBalance) -> FrequencyCurve:

@@ -29,19 +29,14 @@ class PhaseSearch:
         solves = 0
         for near, spent in self._starts(problem, solution):
             solves += spent
-            locked, solves = self._locked(problem, near), solves + 1
-            if locked is not None:
+            held = self._held(problem, near)
+            locked, solves = problem.solve(near.unknowns, near.omega, near.samples, held), solves + 1
+            # The opposite phase has the same condition.
+            opposite = held.leads(locked.unknowns, locked.omega, locked.condensed)
+            if locked.converged and locked.omega > 0 and not opposite:
                 amplitude = float(self.size.of(response_of(problem, locked)[self.row]))
                 return Peak(np.nan, problem, locked, amplitude), solves
         return None, solves
-
-    def _locked(self, problem: Equations, solution: Solution) -> Solution | None:
-        """Return the point of that phase by Newton's method from a solution."""
-        held = self._held(problem, solution)
-        solution = problem.solve(solution.unknowns, solution.omega, solution.samples, held)
-        # The opposite phase has the same condition.
-        opposite = held.leads(solution.unknowns, solution.omega, solution.condensed)
-        return solution if solution.converged and solution.omega > 0 and not opposite else None
 
     def _starts(self, problem: Equations, solution: Solution) -> Iterator[tuple[Solution, int]]:
         """Yield the solution itself, then one behind which the phase passes the asked one; with the solutions to it."""
@@ -50,8 +45,8 @@ class PhaseSearch:
         direction, value = direction_at(solution, upwards(solution), width), self._value(problem, solution)
         length, turned = FIRST, False
         for count in range(1, MOST_STEPS + 1):
-            ahead, onward = PathTangent(solution, direction, width).step(problem, length)
-            if onward is None:
+            ahead, heading = PathTangent(solution, direction, width).step(problem, length)
+            if heading is None:
                 length /= 4
                 continue
             beyond = self._value(problem, ahead)
@@ -63,7 +58,7 @@ class PhaseSearch:
                 direction, turned = -direction, True
                 continue
             turned = True
-            solution, direction, value = ahead, direction_at(ahead, onward, width), beyond
+            solution, direction, value = ahead, direction_at(ahead, heading, width), beyond
             length = min(LONGEST, 2 * length)
 
     def _value(self, problem: Equations, solution: Solution) -> float:

@@ -9,7 +9,7 @@ from dalembert.errors import InputError
 from dalembert.structure import Structure
 from dalembert.structure.structure import AXES
 from dalembert.vibration.laws.contacts import Number
-from dalembert.vibration.system.force_terms import Factor, Term, require_varying
+from dalembert.vibration.system.force_terms import Term, require_varying
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,10 @@ class BaseExcitation(Checked):
         if self.direction not in AXES:
             raise InputError(f"BaseExcitation: direction is {self.direction!r}; expected one of {', '.join(AXES)}")
         if (self.displacement is None) == (self.acceleration is None):
-            raise InputError(f"{self.where} has {self._amplitudes}; expected one of them")
+            stated = "no displacement and no acceleration"
+            if self.displacement is not None:
+                stated = "both a displacement and an acceleration"
+            raise InputError(f"{self.where} has {stated}; expected one of them")
 
     @property
     def dofs(self) -> tuple[str, ...]:
@@ -70,11 +73,6 @@ class BaseExcitation(Checked):
         """What it is, for messages."""
         return f"the base excitation along {self.direction!r}"
 
-    @property
-    def _amplitudes(self) -> str:
-        both = self.displacement is not None
-        return "both a displacement and an acceleration" if both else "no displacement and no acceleration"
-
     def terms(self, structure: Structure) -> list[Term]:
         """Return its parts on the degrees of freedom of a structure."""
         names = structure.dofs.names
@@ -82,12 +80,10 @@ class BaseExcitation(Checked):
         if not np.any(inertia):
             raise InputError(f"{self.where}: no degree of freedom with a mass moves along this axis")
         # -M ι ẍ_b: + (hω)² X M ι cos(hτ + φ) of a displacement.
-        size, square = (
-            (self.displacement, _square(self.harmonic)) if self.acceleration is None else (-self.acceleration, None)
-        )
+        size, factor, h = self.displacement, None, self.harmonic
+        if self.acceleration is not None:
+            size = -self.acceleration
+        else:
+            factor = lambda omega: ((h * omega) ** 2, 2 * h**2 * omega)  # noqa: E731
         c, s = inertia * size * np.cos(self.phase), -inertia * size * np.sin(self.phase)
-        return [Term(np.arange(len(names)), c, s, self.harmonic, square)]
-
-
-def _square(harmonic: int) -> Factor:
-    return lambda omega: ((harmonic * omega) ** 2, 2 * harmonic**2 * omega)
+        return [Term(np.arange(len(names)), c, s, h, factor)]

@@ -66,8 +66,6 @@ class Unbalance(Checked):
         # sin(τ + φ) = sin φ cos τ + cos φ sin τ
         c, s = self.moment * np.cos(self.phase), self.moment * np.sin(self.phase)
         ends = (self.first, c, -s), (self.second, s, c)
-        return [term_at(structure, dof, cosine, sine, 1, _square) for dof, cosine, sine in ends]
-
-
-def _square(omega: float) -> tuple[float, float]:
-    return omega**2, 2 * omega
+        return [
+            term_at(structure, dof, cosine, sine, 1, lambda omega: (omega**2, 2 * omega)) for dof, cosine, sine in ends
+        ]

@@ -69,7 +69,9 @@ def test_a_linear_system_answers_as_its_matrices_do(speed, sparse, monkeypatch):
     base = dense.mass.sum(axis=1)
     f = omega / (2 * np.pi)
     first = 0.05 * omega**2 * base * np.exp(0.2j)
-    first += np.eye(6)[0] + (speed == "synchronous") * 0.1 * omega**2 * np.exp(0.4j) * (np.eye(6)[2] - 1j * np.eye(6)[3])
+    first += np.eye(6)[0] + (speed == "synchronous") * 0.1 * omega**2 * np.exp(0.4j) * (
+        np.eye(6)[2] - 1j * np.eye(6)[3]
+    )
     first += (1 + f**2) * np.exp(0.3j * f) * np.eye(6)[1]
     for order, load in ((1, first), (2, -0.5 * base)):
         s = order * omega

@@ -142,8 +142,7 @@ def along(
         if fold is not None:
             yield PathPoint(fold, fold=True)
         gone = max(gone, first.distance(solution))
-        passes = first.distance(solution) <= step and direction is not None
-        if gone > AWAY * longest and passes and float(direction @ first.direction) > STEADY:
+        if gone > AWAY * longest and first.meets(solution, direction, step):
             yield PathPoint(solution, fold=folds and fold is None, end=CLOSED)
             return
         yield PathPoint(solution, fold=folds and fold is None)
@@ -171,6 +170,11 @@ class PathTangent:
         """Return the distance of a point in scaled unknowns."""
         moved = norm(solution.unknowns - self.known.unknowns) / self.size
         return float(np.hypot(moved, (solution.omega - self.known.omega) / self.width))
+
+    def meets(self, solution: Solution, direction: np.ndarray | None, length: float) -> bool:
+        """Return True if a step of a length to a point passes here, in the same direction."""
+        alike = direction is not None and float(direction @ self.direction) > STEADY
+        return alike and self.distance(solution) <= length
 
     def step(self, equations: PathProblem, length: float) -> tuple[Solution, np.ndarray | None]:
         """Return the point after a step, and the direction there in the scales of this point; None if not converged."""

@@ -15,15 +15,27 @@ ADVICE = {
 
 
 def end_findings(
-    places: np.ndarray, converged: np.ndarray, ends: tuple[float, float], what: str, unit: str, end_inside: str = ""
+    places: np.ndarray,
+    converged: np.ndarray,
+    ends: tuple[float, float],
+    what: str,
+    unit: str,
+    end_inside: str = "",
+    left: bool = False,
 ) -> tuple[Finding, ...]:
-    """Return the finding on a path that did not reach its end. ``places`` (points,): values of what the path leads
+    """Return the findings on a path that left its range, or did not reach its end. ``places`` (points,): values of what the path leads
     over, in its order; ``converged`` (points,); ``what``, ``unit``: of the values; ``end_inside``: the reason of an end
-    inside the range, if it has one.
+    inside the range, if it has one; ``left``: whether the path leaves the range at its first value and comes back.
     """
     (begin, end), last = ends, float(places[-1])
+    outside: tuple[Finding, ...] = ()
+    if left:
+        message = (
+            f"The path leaves the range at {begin:.6g} {unit} ({what}) and comes back. Its part outside is missing."
+        )
+        outside = (Finding("left-range", "warning", {"begin": begin}, message, "Begin the range farther outside."),)
     if np.isclose(last, end, rtol=1e-12, atol=0.0):  # a point that was not found there has its finding
-        return ()
+        return outside
     where = f"{last:.6g} {unit} ({what})"
     if end_inside == "closed":
         reason, how = end_inside, f"The path is closed: it comes back to its first point at {where}."
@@ -39,14 +51,4 @@ def end_findings(
     farthest = float(reached[np.argmax(reached * np.sign(end - begin))]) if reached.size else begin
     values = {"reason": reason, "last": last, "farthest": farthest, "end": end}
     message = f"{how} It does not reach {end:.6g} {unit}."
-    return (Finding("end-not-reached", "warning", values, message, ADVICE[reason]),)
-
-
-def left_findings(left: bool, begin: float, what: str, unit: str) -> tuple[Finding, ...]:
-    """Return the finding on a path that leaves its range at its first value and comes back there."""
-    if not left:
-        return ()
-    message = (
-        f"The path leaves the range at {begin:.6g} {unit} ({what}) and comes back there. Its part outside is missing."
-    )
-    return (Finding("left-range", "warning", {"begin": begin}, message, "Begin the range farther outside."),)
+    return (*outside, Finding("end-not-reached", "warning", values, message, ADVICE[reason]))

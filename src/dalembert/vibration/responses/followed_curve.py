@@ -27,7 +27,7 @@ from dalembert.vibration.paths.continuation import across, at_frequencies, natur
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import observed, response_of, restarted
 from dalembert.vibration.paths.motion_findings import open_findings, rotor_findings
-from dalembert.vibration.paths.path_end import end_findings, left_findings
+from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.responses.control import Controlled, HeldAmplitude
 from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
 from dalembert.vibration.storage import versions
@@ -214,7 +214,6 @@ def conclude(posed: PosedCurve, followed: FollowedCurve) -> FrequencyCurve:
         findings=(
             *unconverged_findings(len(frequencies), followed.unconverged),
             *ended,
-            *left_findings(followed.left_range, limits[0], "frequency", "Hz"),
             *free_findings(problem),
             *open_findings(problem.lowered, arrays["forces"][converged], arrays["states"][converged]),
             *rotor_findings(problem.lowered, float(np.max(posed.omegas))),

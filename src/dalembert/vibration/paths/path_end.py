@@ -23,9 +23,11 @@ def end_findings(
     end_inside: str = "",
     left: bool = False,
 ) -> tuple[Finding, ...]:
-    """Return the findings on a path that left its range, or did not reach its end. ``places`` (points,): values of what the path leads
-    over, in its order; ``converged`` (points,); ``what``, ``unit``: of the values; ``end_inside``: the reason of an end
-    inside the range, if it has one; ``left``: whether the path leaves the range at its first value and comes back.
+    """Return the findings on a path that left its range, or did not reach its end.
+
+    ``places`` (points,): values of what the path leads over, in its order; ``converged`` (points,); ``what``, ``unit``:
+    of the values; ``end_inside``: the reason of an end inside the range, if it has one; ``left``: whether the path
+    leaves the range at its first value and comes back.
     """
     (begin, end), last = ends, float(places[-1])
     outside: tuple[Finding, ...] = ()

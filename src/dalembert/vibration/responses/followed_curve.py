@@ -146,7 +146,9 @@ def follow(
         top = largest(top, solution) if check else None
         left_range, end_inside = left_range or point.returned, end_inside or point.end
         if posed.on_point is not None:
-            done = max(done, _progress(posed, float(solution.omega), len(records)))
+            # Part of the way between the ends of a path, or of the frequencies.
+            part = (solution.omega - posed.omegas[0]) / (posed.omegas[-1] - posed.omegas[0]) if posed.is_path else 0.0
+            done = max(done, float(min(part if posed.is_path else len(records) / len(posed.omegas), 1.0)))
             frequency, response = records[-1]["frequencies"], records[-1]["response"]
             posed.on_point(FollowedPoint(frequency, response, dofs, done, problem.method.orders))
     markers = tuple((marker, row) for row, record in enumerate(records) if (marker := record.pop("marker")))
@@ -186,13 +188,6 @@ def _points(posed: PosedCurve, problem: Equations, start: CurvePoint | None) -> 
         return at_frequencies(path, posed.omegas, known)
     follow = across if posed.settings["continuation"] == ARC_LENGTH else natural
     return follow(path, float(posed.omegas[0]), float(posed.omegas[1]), known)
-
-
-def _progress(posed: PosedCurve, omega: float, count: int) -> float:
-    """Part of the way between the ends of a path, or of the given frequencies."""
-    omegas = posed.omegas
-    part = (omega - omegas[0]) / (omegas[1] - omegas[0]) if posed.is_path else count / len(omegas)
-    return float(min(part, 1.0))
 
 
 def conclude(posed: PosedCurve, followed: FollowedCurve) -> FrequencyCurve:

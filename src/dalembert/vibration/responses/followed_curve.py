@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.arc_length import JOINED, PathPoint, along
 from dalembert.vibration.balance.conclusions import (
@@ -195,9 +196,10 @@ def conclude(posed: PosedCurve, followed: FollowedCurve) -> FrequencyCurve:
     problem, arrays = followed.equations, followed.arrays
     method, frequencies, converged = problem.method, arrays["frequencies"], arrays["converged"]
     limits = problem.hertz(posed.omegas[0]), problem.hertz(posed.omegas[-1])
-    ended = (
-        end_findings(frequencies, converged, limits, "frequency", "Hz", followed.end_inside) if posed.is_path else ()
-    )
+    ended: tuple[Finding, ...] = ()
+    if posed.is_path:
+        how = followed.end_inside, followed.left_range
+        ended = end_findings(frequencies, converged, limits, "frequency", "Hz", *how)
     return FrequencyCurve(
         dofs=followed.dofs,
         coordinates=problem.lowered.row_names,

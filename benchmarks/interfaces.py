@@ -24,14 +24,19 @@ CASES = (
     (26, 12, 7, 6.0),
 )
 """Elements along and across the overlap, harmonics, force (N)."""
+PATHS = ((4, 2, 3, 4.0), (26, 12, 7, 4.0))
+"""Cases that are followed by arc length, too, with about 200 points."""
 ROWS, COLUMNS = 3039, 15
 FREQUENCIES = np.linspace(69.4, 72.27, 21)
+RESOLUTION = 0.008
 
 
 def main() -> list[dict[str, object]]:
     rows = [row for case in CASES for row in (_apart(*case, events) for events in (False, True))]
     timing.report("interfaces", "Lap joint of two bars on contact pairs alone, 21 points over its resonance", rows)
-    return rows
+    paths = [_apart(*case, False, True) for case in PATHS]
+    timing.report("interface-paths", "The same joint by arc length", paths)
+    return [*rows, *paths]
 
 
 def _apart(*case: object) -> dict[str, object]:
@@ -40,13 +45,15 @@ def _apart(*case: object) -> dict[str, object]:
         return pool.apply(_row, case)
 
 
-def _row(along: int, across: int, harmonics: int, force: float, events: bool) -> dict[str, object]:
+def _row(along: int, across: int, harmonics: int, force: float, events: bool, path: bool = False) -> dict[str, object]:
     mesh, between = bars(along, across)
     system, times = lap_joint(mesh, mesh, between, force, 10_000.0), []
     unit, begin = _unit(), process_time()
+    method = HarmonicBalance(harmonics, samples=128, events=events, solver="receptance", resolution=RESOLUTION)
+    way = {"continuation": "arc-length"} if path else {}
     curve = frequency_response(
-        system, FREQUENCIES, HarmonicBalance(harmonics, samples=128, events=events, solver="receptance"),
-        observe=[f"{tip(mesh)}.z"], check=False, on_point=lambda _: times.append(process_time()),
+        system, (FREQUENCIES[0], FREQUENCIES[-1]) if path else FREQUENCIES, method,
+        observe=[f"{tip(mesh)}.z"], check=False, on_point=lambda _: times.append(process_time()), **way,
     )  # fmt: skip
     megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
     return {

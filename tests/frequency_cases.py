@@ -25,16 +25,20 @@ from dalembert.vibration import (
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
+    HeldAmplitude,
     Newmark,
+    StaticContact,
     VibrationSystem,
     backbone,
     compare_in_time,
     deformation,
     frequency_response,
     frequency_responses,
+    static_contact,
     steady_state,
     track_resonance,
 )
+from lap_joint import bars, lap_joint
 from report_case import Case
 from vibrating_systems import chain, duffing, one_mass, two_masses
 
@@ -47,6 +51,11 @@ def _stuck() -> VibrationSystem:
     system = one_mass()
     system.forces[0] = replace(system.forces[0], amplitude=1e-3)
     return system
+
+
+def _bolted() -> StaticContact:
+    mesh, between = bars(4, 2)
+    return static_contact(lap_joint(mesh, mesh, between, 0.0, 1e4))
 
 
 def _row(masses: int) -> VibrationSystem:
@@ -189,6 +198,16 @@ FREQUENCY_CASES: dict[str, Case] = {
             chain(), HZ * np.linspace(1.0, 2.2, 25), HarmonicBalance(harmonics=5, samples=256, iterations=7, halvings=0)
         ),
         ("points between", "were not found; they are marked", "Crosses: not found.", "Points that were not found"),
+    ),
+    "a response whose amplitude is held": Case(
+        lambda: frequency_response(two_masses(), AROUND, FEW, control=HeldAmplitude("m2", 0.5)),
+        ("Held amplitude", "All forces but static ones have this factor, so that the amplitude is held."),
+        ("load-factors",),
+    ),
+    "a joint at rest": Case(
+        _bolted,
+        ("Contacts at rest", "Coloured by the normal force; a thick ring: the contact slips; hollow: it is open."),
+        ("normal-forces",),
     ),
     "a response that is not found": Case(
         lambda: frequency_response(two_masses(), AROUND, HarmonicBalance(harmonics=7, iterations=1, halvings=0)),

@@ -245,7 +245,7 @@ def factors_in_time(system: VibrationSystem, omega: float, guess: np.ndarray) ->
 
 
 @pytest.mark.slow
-def test_points_between_the_folds_of_two_numbers_of_harmonics_have_no_label(record_evidence) -> None:
+def test_points_between_the_folds_of_two_numbers_of_harmonics_are_judged_on_the_path(record_evidence) -> None:
     """Behind the fold with nine harmonics, the multipliers with more harmonics are those of a motion before the fold."""
     system, method = with_a_stop(), HarmonicBalance(9)
     ends = 0.84 / TURN, 1.13 / TURN
@@ -256,21 +256,13 @@ def test_points_between_the_folds_of_two_numbers_of_harmonics_have_no_label(reco
         frequency, start = path.frequencies[[point]], (path, int(point))
         curve = frequency_response(system, frequency, method, stability=True, check=False, start=start)
         labels.append(int(curve.stable[0]))
-        codes = [finding.code for finding in curve.findings]
-        assert codes == ["stability-near-fold"] * (labels[-1] < 0)
+        assert "stability-near-fold" not in {finding.code for finding in curve.findings}
         largest.append(float(abs(factors_in_time(system, TURN * float(frequency[0]), begin(path, point))[0])))
-        if labels[-1] < 0:  # by the multipliers with more harmonics, the motion would be stable
-            assert np.all(np.abs(floquet_multipliers(system, path, int(point))) < 1)
-    assert labels == [1, -1, -1, 0]
-    wrong = sum(label >= 0 and bool(label) != (size < 1) for label, size in zip(labels, largest, strict=True))
+    assert labels == [1, 0, 0, 0]
+    wrong = sum(bool(label) != (size < 1) for label, size in zip(labels, largest, strict=True))
     record_evidence(
-        "three masses with a stop, 9 harmonics, about a fold: wrong labels of 4 points, of which 2 behind the fold have none", 0, wrong,
-        tolerance=0, topic=TOPIC, kind="other method", source=TIME,
-    )  # fmt: skip
-    record_evidence(
-        "the same: points behind the fold without label whose largest multiplier in time exceeds 1", 2,
-        sum(label < 0 and size > 1 for label, size in zip(labels, largest, strict=True)),
-        tolerance=0, topic=TOPIC, kind="other method", source=TIME,
+        "three masses with a stop, 9 harmonics, about a fold: wrong labels of 4 points, of which 3 are behind the fold",
+        0, wrong, tolerance=0, topic=TOPIC, kind="other method", source=TIME,
     )  # fmt: skip
 
 

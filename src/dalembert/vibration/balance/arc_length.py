@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar, cast
 import numpy as np
 from scipy.optimize import brentq
 
-from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, HarmonicBalance
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Constraint, CrossingPlane, Solution
 from dalembert.vibration.balance.tangents import bordered, orientation
 from dalembert.vibration.interface.condensed_structure import norm
@@ -21,6 +21,8 @@ SHORTEST = 1e-7
 """Smallest step relative to the largest. Continuation stops below it."""
 SHARP = 1e-3
 """Step, as part of the longest, from which on the path may have a sharp turn."""
+CLOSE = 1e-5
+"""Step, as part of the longest, from which on a turn is near enough for tangents of places ahead."""
 REACHES = (1.0, 4.0, 16.0, 64.0)
 """Steps beyond a sharp turn, in parts of the one that failed before it."""
 CLOSED, JOINED = "closed", "joined"
@@ -111,14 +113,9 @@ def along(
     while points < MOST_POINTS:
         solution, direction = path.step(equations, step)
         # Behind a corner, such as a contact that opens at once, no shorter step converges: halving would only creep up
-        # to it. A corner of the samples is elsewhere with more of them. Else the branch behind is sought from its own
-        # tangent.
+        # to it. The branch behind is sought from its own tangent.
         if direction is None and step <= SHARP * longest:
-            finer = path.resampled(equations, step)
-            if finer is not None:
-                path = finer
-                continue
-            beyond = path.turned(equations, solution, step)
+            beyond = path.turned(equations, solution, step, ahead=step <= CLOSE * longest)
             if beyond is not None:
                 yield PathPoint(beyond.known, fold=bool(beyond.direction[-1] * path.direction[-1] < 0))
                 path, points = beyond, points + 1
@@ -192,26 +189,12 @@ class PathTangent:
         except np.linalg.LinAlgError:  # a shorter step may end beside the singular point
             return solution, None
 
-    def resampled(self, equations: PathProblem, length: float) -> "PathTangent | None":
-        """Return the path from the same place with twice the samples; None if a step fails with them, too."""
-        samples, method = 2 * self.known.samples, equations.method
-        if method.samples != AUTO or samples > MOST_SAMPLES:
-            return None
-        known = equations.solve(self.known.unknowns, self.known.omega, samples)
-        if not known.converged:
-            return None
-        try:
-            path = PathTangent(known, direction_at(known, self.direction, self.width), self.width)
-        except np.linalg.LinAlgError:
-            return None
-        return path if path.step(equations, length)[1] is not None else None
-
-    def turned(self, equations: PathProblem, failed: Solution, length: float) -> "PathTangent | None":
+    def turned(self, equations: PathProblem, failed: Solution, length: float, ahead: bool) -> "PathTangent | None":
         """Return the path behind a sharp turn.
 
-        Its tangent is that where a step over the turn failed, or that of places ahead: on the old side of a kink the
-        former is the old tangent. It is oriented by the sign of the determinant with the direction as a row, which a
-        path keeps.
+        Its tangent is that where a step over the turn failed, or, with ``ahead``, that of places ahead: on the old side
+        of a kink the former is the old tangent. It is oriented by the sign of the determinant with the direction as a
+        row, which a path keeps.
         """
         sign = _sign(self.known, self.direction, self.width, self.size)
         if not sign:
@@ -219,7 +202,7 @@ class PathTangent:
         # Pieces of a piecewise smooth map meet at a kink. On the new one the tangent solves J dU + ∂R/∂ω dω = 0 with
         # its Jacobian, which holds at any place of the piece: also at one that is no solution (the pivots of piecewise
         # linear homotopies: Allgower and Georg, Numerical Continuation Methods, 1990, chapter 12).
-        for reach in (0.0, *REACHES):
+        for reach in (0.0, *(REACHES if ahead else ())):
             place = failed if reach == 0.0 else self._ahead(equations, reach * length)
             beyond = self._tangent_of(place, sign)
             if beyond is None or (reach and float(beyond @ self.direction) > STEADY):

@@ -121,7 +121,7 @@ def test_no_point_behind_a_fold_is_stable_by_perturbations_of_a_motion_before_it
         "points": len(places), "lowest": places.min(), "highest": places.max(), "harmonics": 1,
     }  # fmt: skip
     assert finding.message == (
-        f"The stability of {len(places)} points between 0.244165 and {places.max():.6g} Hz is not known: a fold lies at another "
+        f"The stability of {len(places)} points between 0.249457 and {places.max():.6g} Hz is not known: a fold lies at another "
         "frequency with 1 harmonic than with more."
     )
     finer = follow(9)

@@ -6,7 +6,7 @@ the residual keeps it from jumping between the sides.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
@@ -166,7 +166,7 @@ def correct(
 
     def place(unknowns: np.ndarray, omega: float, point: Any, step: bool = True) -> Solution:
         point = structure(omega) if point is None else point
-        return replace(placed(balance, point, method, unknowns, omega, plane, step), iterations=len(errors))
+        return placed(balance, point, method, unknowns, omega, plane, step, len(errors))
 
     def moved(at: Solution, step: tuple[np.ndarray, float], part: float) -> Solution:
         # Most steps go all the way; after one that does not, the Jacobian is made only where the search ends.
@@ -198,8 +198,9 @@ def placed(
     omega: float,
     plane: Constraint | None = None,
     step: bool = True,
+    iterations: int = 0,
 ) -> Solution:
-    """Evaluate the balance at a place, without an iteration. ``step``: with its tangent."""
+    """Evaluate the balance at a place, after some iterations. ``step``: with its tangent."""
     of: Any = balance  # its points are those that its structure returns
     linearised: Any = of.linearised(point, unknowns) if step else (of.at(point, unknowns), None)
     evaluation, tangent = linearised
@@ -212,7 +213,7 @@ def placed(
     rounding = min(ROUNDING * max(point.stiffest * norm(unknowns), evaluation.terms) / scale, VERIFIED)
     converged = error <= max(method.tolerance, rounding)
     return Solution(
-        omega, unknowns, point, evaluation, tangent, scale, 0, error, converged, balance.series.samples,
+        omega, unknowns, point, evaluation, tangent, scale, iterations, error, converged, balance.series.samples,
         distance=distance,
     )  # fmt: skip
 

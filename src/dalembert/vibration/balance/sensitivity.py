@@ -104,7 +104,7 @@ def _unbalanced(lowered: Lowered, point: Any, motion: np.ndarray) -> np.ndarray:
     matrices = {name: matrix for name in MATRICES if (matrix := getattr(lowered.structure, name)) is not None}
     matrices |= {name: speed * matrices[name] for name in ROTATING if name in matrices}
     moved = {name: _step(matrix) @ motion.T for name, matrix in matrices.items()}
-    return np.asarray(combined(factors(point.frequencies, 1.0), moved)).T
+    return np.asarray(combined(factors(moved, point.frequencies, 1.0), moved)).T
 
 
 def _step(array: Any) -> Any:

@@ -120,11 +120,15 @@ class Condensation:
         """Forces on the retained and the interior coordinates, and their derivatives by ω, (orders, -) each."""
         outer, inner = self._outer_loads, self._inner_loads
         if not self._loads.factors:
-            return (outer[0], inner[0]), (0 * outer[0], 0 * inner[0])
+            return (outer[0], inner[0]), self._no_loads
         first, second = (
             (np.tensordot(weights, outer, 1), np.tensordot(weights, inner, 1)) for weights in self._loads.weights(omega)
         )
         return first, second
+
+    @cached_property
+    def _no_loads(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros_like(self._outer_loads[0]), np.zeros_like(self._inner_loads[0])
 
     @property
     def constant_loads(self) -> np.ndarray:
@@ -254,12 +258,12 @@ class Condensation:
         """Z at frequencies (orders,), or at one."""
         if np.ndim(s):
             s = s.reshape(-1, *[1] * blocks[0].ndim)
-        return combined(factors(s, speed), dict(zip(self.kinds, blocks, strict=True)))
+        return combined(factors(self.kinds, s, speed), dict(zip(self.kinds, blocks, strict=True)))
 
     def _slope(self, blocks: list[Any], s: np.ndarray, spin: tuple[float, float]) -> Any:
         """Derivative of :meth:`_dynamic` by ω. ``spin``: speed of the rotor, and its derivative by ω."""
         orders = self.orders.reshape(-1, *[1] * blocks[0].ndim)
-        weights = slope_factors(orders, s.reshape(orders.shape), spin)
+        weights = slope_factors(self.kinds, orders, s.reshape(orders.shape), spin)
         return combined(weights, dict(zip(self.kinds, blocks, strict=True)))
 
     def _inner_slope(self, s: np.ndarray, solved: np.ndarray, spin: tuple[float, float]) -> np.ndarray:
@@ -267,7 +271,7 @@ class Condensation:
         if not issparse(self.inner[0]):
             return _times(self._slope(self.inner, s, spin), solved)
         moved = ({name: block @ x for name, block in zip(self.kinds, self.inner, strict=True)} for x in solved)
-        weights = (slope_factors(h, w, spin) for h, w in zip(self.orders, s, strict=True))
+        weights = (slope_factors(self.kinds, h, w, spin) for h, w in zip(self.orders, s, strict=True))
         return np.stack([combined(*pair) for pair in zip(weights, moved, strict=True)])
 
     @cached_property

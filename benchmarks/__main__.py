@@ -37,6 +37,7 @@ NAMES = (
 MORE = {
     "bolted": ("vibration-cost",),
     "flexible": ("flexible-elbow", "flexible-slider-crank", "flexible-chains"),
+    "interfaces": ("interface-paths",),
     "spatial": ("spatial-sensitivities",),
 }
 PAGES = tuple(page for name in NAMES for page in (name, *MORE.get(name, ())))

@@ -178,8 +178,7 @@ class PathTangent:
         # The guess y + s t is corrected on the plane t · (y' - y - s t) = 0 across the path (pseudo-arc length).
         # Pseudo-arc length (Keller): a plane across the tangent keeps the added equation linear; `STEADY` refuses steps
         # that bend too much for it.
-        moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
-        guess, omega = self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
+        guess, omega = self._guess(length)
         plane = CrossingPlane(self.direction, guess, omega, self.size, self.width)
         solution = equations.solve(guess, omega, self.known.samples, plane)
         if not solution.converged:
@@ -200,8 +199,8 @@ class PathTangent:
         if not sign:
             return None
         # Pieces of a piecewise smooth map meet at a kink. On the new one the tangent solves J dU + ∂R/∂ω dω = 0 with
-        # its Jacobian, which holds at any place of the piece: also at one that is no solution (the pivots of piecewise
-        # linear homotopies: Allgower and Georg, Numerical Continuation Methods, 1990, chapter 12).
+        # its Jacobian. It can be taken at any place of the piece (the pivots of piecewise linear homotopies: Allgower
+        # and Georg, Numerical Continuation Methods, 1990, chapter 12).
         for reach in (0.0, *(REACHES if ahead else ())):
             place = failed if reach == 0.0 else self._ahead(equations, reach * length)
             beyond = self._tangent_of(place, sign)
@@ -216,10 +215,13 @@ class PathTangent:
         return None
 
     def _ahead(self, equations: PathProblem, length: float) -> Solution:
-        """Return the balance at a place straight ahead, which is no solution."""
+        """Return the balance at the guess of a step. It is not a solution."""
+        return equations.placed(*self._guess(length), self.known.samples)
+
+    def _guess(self, length: float) -> tuple[np.ndarray, float]:
+        """Return the unknowns and the frequency at a distance along the tangent."""
         moved = self.direction[:-1].reshape(self.known.unknowns.shape) * (length * self.size)
-        omega = self.known.omega + self.direction[-1] * length * self.width
-        return equations.placed(self.known.unknowns + moved, omega, self.known.samples)
+        return self.known.unknowns + moved, self.known.omega + self.direction[-1] * length * self.width
 
     def _tangent_of(self, place: Solution, sign: float) -> np.ndarray | None:
         """Return the tangent at a place, oriented; None if there is none."""

@@ -96,8 +96,8 @@ class Controlled:
     def _solved(self, unknowns: np.ndarray, omega: float, samples: int, load: float) -> Solution:
         """Solve from a guess of the motion and of the load, which is the ``omega`` of the solution."""
         whole = self.problem.condensation.at(omega)
-        held = AmplitudeHeld(self._response, self._amplitude, omega, norm(unknowns) or 1.0, load)
-        return self.problem.solve(unknowns, load, samples, held, at=whole.loaded)
+        constraint = AmplitudeHeld(self._response, self._amplitude, omega, norm(unknowns) or 1.0, load)
+        return self.problem.solve(unknowns, load, samples, constraint, at=whole.loaded)
 
     def placed(self, unknowns: np.ndarray, omega: float, samples: int) -> Solution:
         """Return the balance at a place, with the last load."""
@@ -125,7 +125,7 @@ class Controlled:
         if not known.converged:
             return
         # Where the motion is linear the load follows from the first one.
-        reach = self._size(known, whole.loaded(known.omega))
+        reach = self._size(known)
         last = LEAST_LOAD * self._amplitude / (reach or self._amplitude)
         yield replace(known, unknowns=known.unknowns * (last / LEAST_LOAD), omega=last)
         below: Solution | None = None
@@ -133,7 +133,7 @@ class Controlled:
             solution = point.solution
             if not solution.converged:
                 return
-            above = self._size(solution, whole.loaded(solution.omega)) > self._amplitude
+            above = self._size(solution) > self._amplitude
             if above:
                 if below is not None:
                     yield below
@@ -141,5 +141,5 @@ class Controlled:
                 return
             below = solution
 
-    def _size(self, solution: Solution, point: object) -> float:
-        return abs(self._response.phasor(solution.unknowns, point))  # type: ignore[arg-type]
+    def _size(self, solution: Solution) -> float:
+        return abs(self._response.phasor(solution.unknowns, solution.condensed))

@@ -26,30 +26,33 @@ class PhaseSearch:
 
     def search(self, problem: Equations, solution: Solution, bend: float) -> tuple[Peak | None, int]:
         """Return the point of that phase next to a solution, and the number of solutions."""
-        solves = 0
-        for near, spent in self._starts(problem, solution):
-            solves += spent
-            held = self._held(problem, near)
-            locked, solves = problem.solve(near.unknowns, near.omega, near.samples, held), solves + 1
+        solves, constraint = 0, self._constraint(problem, solution)
+        for near, spent in self._starts(problem, solution, constraint):
+            solves += spent + 1
+            locked = problem.solve(near.unknowns, near.omega, near.samples, constraint)
             # The opposite phase has the same condition.
-            opposite = held.leads(locked.unknowns, locked.omega, locked.condensed)
+            opposite = constraint.leads(locked.unknowns, locked.omega, locked.condensed)
             if locked.converged and locked.omega > 0 and not opposite:
                 amplitude = float(self.size.of(response_of(problem, locked)[self.row]))
                 return Peak(np.nan, problem, locked, amplitude), solves
         return None, solves
 
-    def _starts(self, problem: Equations, solution: Solution) -> Iterator[tuple[Solution, int]]:
+    def _starts(self, problem: Equations, solution: Solution, constraint: PhaseHeld) -> Iterator[tuple[Solution, int]]:
         """Yield the solution itself, then one behind which the phase passes the asked one; with the solutions to it."""
+
+        def off(at: Solution) -> float:
+            return constraint.distance(at.unknowns, at.omega, at.point)
+
         yield solution, 0
         width = WIDTH * solution.omega
-        direction, value = direction_at(solution, upwards(solution), width), self._value(problem, solution)
+        direction, value = direction_at(solution, upwards(solution), width), off(solution)
         length, turned = FIRST, False
         for count in range(1, MOST_STEPS + 1):
             ahead, heading = PathTangent(solution, direction, width).step(problem, length)
             if heading is None:
                 length /= 4
                 continue
-            beyond = self._value(problem, ahead)
+            beyond = off(ahead)
             if beyond * value <= 0:
                 yield (ahead if abs(beyond) < abs(value) else solution), count
                 return
@@ -61,10 +64,7 @@ class PhaseSearch:
             solution, direction, value = ahead, direction_at(ahead, heading, width), beyond
             length = min(LONGEST, 2 * length)
 
-    def _value(self, problem: Equations, solution: Solution) -> float:
-        return self._held(problem, solution).distance(solution.unknowns, solution.omega, solution.point)
-
-    def _held(self, problem: Equations, solution: Solution) -> PhaseHeld:
+    def _constraint(self, problem: Equations, solution: Solution) -> PhaseHeld:
         series = problem.balance(solution.samples).series
         response = ResponseRow(problem.condensation, series, self.row)
         size = float(np.linalg.norm(solution.unknowns)) or 1.0

@@ -1,6 +1,7 @@
 """A base that moves."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -75,15 +76,12 @@ class BaseExcitation(Checked):
 
     def terms(self, structure: Structure) -> list[Term]:
         """Return its parts on the degrees of freedom of a structure."""
-        names = structure.dofs.names
         inertia = structure.inertia_of_base[:, AXES.index(self.direction)]
         if not np.any(inertia):
             raise InputError(f"{self.where}: no degree of freedom with a mass moves along this axis")
         # -M ι ẍ_b: + (hω)² X M ι cos(hτ + φ) of a displacement.
-        size, factor, h = self.displacement, None, self.harmonic
-        if self.acceleration is not None:
-            size = -self.acceleration
-        else:
-            factor = lambda omega: ((h * omega) ** 2, 2 * h**2 * omega)  # noqa: E731
+        h, moves = self.harmonic, self.acceleration is None
+        size: Any = self.displacement if self.acceleration is None else -self.acceleration
         c, s = inertia * size * np.cos(self.phase), -inertia * size * np.sin(self.phase)
-        return [Term(np.arange(len(names)), c, s, h, factor)]
+        rows = np.arange(structure.size)
+        return [Term(rows, c, s, h, (lambda omega: ((h * omega) ** 2, 2 * h**2 * omega)) if moves else None)]

@@ -33,7 +33,7 @@ class VibrationSystem(Displayed):
     Raises
     ------
     InputError
-        For anything else than a structure, a speed that is no number, and a rotor without a speed.
+        If the structure is not a Structure, the speed is not a number, or a rotor has no speed.
 
     Examples
     --------

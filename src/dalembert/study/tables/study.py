@@ -183,7 +183,7 @@ class Study(Displayed):
         system = self.system()
         balance = self.balance.keeping(system.highest_harmonic).first()
         with naming("model"):
-            solver = chosen_solver(lower(system), balance, stability=False)
+            solver = chosen_solver(lower(system), balance)
             result = equations(system, replace(balance, solver=solver))
         if result.by_receptances:
             with placed(self.file.model.holding, SolveError):

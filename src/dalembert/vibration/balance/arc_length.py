@@ -51,14 +51,17 @@ class PathProblem(Protocol):
     def first(self, omega: float, /) -> Solution: ...
 
 
+ACROSS_FOLD, MANY_ROWS = "fold", "rows"
+
+
 @dataclass(frozen=True)
 class PathPoint:
     """A point of a curve. ``fold``: whether the curve turns back here, or where the turn is sharp, just before;
     ``returned``: whether the curve comes back here to the frequencies that were asked for; ``stable``: 1, 0, or -1
-    where it is not known; ``marker``: kind of the bifurcation that lies here, or nothing; ``across_fold``: whether
-    stability is not known because a fold lies between the motion and its perturbations; ``end``: why the path ends
-    here inside its range: "closed" where it comes back to its first point, "joined" where a branch comes to the curve
-    that it left.
+    where it is not known; ``marker``: kind of the bifurcation that lies here, or nothing; ``unjudged``: why stability
+    is not known: ACROSS_FOLD if a fold lies between the motion and its perturbations, or MANY_ROWS; ``end``: why the
+    path ends here inside its range: "closed" where it comes back to its first point, "joined" where a branch comes to
+    the curve that it left.
     """
 
     solution: Solution
@@ -66,7 +69,7 @@ class PathPoint:
     returned: bool = False
     stable: int = -1
     marker: str = ""
-    across_fold: bool = False
+    unjudged: str = ""
     end: str = ""
 
 

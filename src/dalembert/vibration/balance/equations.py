@@ -116,6 +116,15 @@ class Equations:
             return balance
         raise TypeError("the equations are by receptances, without dynamic stiffnesses")
 
+    @cached_property
+    def measured(self) -> np.ndarray:
+        """Weights of the unknowns in the displacement of the measured degree of freedom, (unknowns,)."""
+        row = self.lowered.measured
+        assert row is not None  # it is asked of equations that measure one
+        if self.by_receptances:
+            return np.eye(1, len(self.lowered.row_names), row)[0]
+        return self.lowered.coordinates.combination[row]
+
     def motion(self, point: Point, unknowns: np.ndarray, samples: int, dofs: np.ndarray | None = None) -> np.ndarray:
         """Coefficients of all degrees of freedom, or of some, (dofs, coefficients)."""
         balance = self.balance(samples)
@@ -274,17 +283,21 @@ def equations(
     derivatives: bool = False,
     highest: float = 0.0,
     known: KnownStructures | None = None,
+    measured: int | None = None,
 ) -> Equations:
     """Return the equations of a system, their kernels compiled or loaded. ``checkpoint``: where solutions are stored;
     ``residuals``, ``stability``, ``derivatives``: what is computed besides residuals with their Jacobians: residuals
     alone (:meth:`Equations.solve` needs them), the stability of solutions by the time map, derivatives by parameters;
-    ``highest``: largest angular frequency of the motions, rad/s; ``known``: structures of other systems.
+    ``highest``: largest angular frequency of the motions, rad/s; ``known``: structures of other systems; ``measured``:
+    degree of freedom whose displacement is to be linear in the unknowns.
     Parts on degrees of freedom that the structure lacks, odd harmonics alone where a force has a mean or even
     harmonics, rigid contacts that depend on each other, and mean forces along a motion that nothing holds are refused.
     """
     lowered = replace(lower(system).real, periods=method.periods)
     if method.odd_only:
         _require_symmetry(lowered)
+    if measured is not None:
+        lowered = lowered.measuring(measured)
     prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
     stuck = ContactsStuck(lowered, highest, KnownStructures() if known is None else known)
     return Equations(lowered, method, checkpoint, _stuck=stuck)
@@ -294,18 +307,16 @@ LARGE = 500
 """Unknowns of elastic contacts above which a system is solved by receptances."""
 
 
-def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool) -> str:
+def chosen_solver(lowered: Lowered, method: HarmonicBalance) -> str:
     """Return the way in which the structure is written for a curve.
 
-    InputError where receptances are asked for and rigid contacts, rotors or ``stability`` need dynamic stiffnesses.
+    InputError where receptances are asked for and rigid contacts need dynamic stiffnesses.
     """
     causes = [
         f"the contact {lowered.contacts[block.contacts[0]]!r} is rigid"
         for block in lowered.blocks
         if block.kind != ELASTIC
     ]
-    causes += ["the structure has a rotor"] * lowered.structure.rotates
-    causes += ["the stability of points was asked for"] * stability
     if method.solver == RECEPTANCE and causes:
         raise InputError(
             f"HarmonicBalance: solver is 'receptance', but {causes[0]}, which needs dynamic stiffnesses. "

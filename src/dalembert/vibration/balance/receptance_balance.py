@@ -9,7 +9,7 @@ says has :math:`\lambda - r u` constant: it adds no column to the Jacobian
 :math:`1 + G\,(\partial\lambda/\partial u - r)`. The solution does not depend on r.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -84,6 +84,17 @@ class ReceptanceBalance:
         """Forces of the elements beyond those of their reference, λ - r u, (rows, coefficients)."""
         return self.elements.forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
 
+    def active(self, point: ReceptancePoint, unknowns: np.ndarray) -> Lowered:
+        """The system without the contacts that do what their reference says at a point."""
+        evaluation, deviation = self._evaluated(point, unknowns)
+        moving = self._moving(unknowns, deviation, evaluation.states)
+        blocks = (
+            replace(block, rows=block.rows[which], contacts=block.contacts[which], numbers=block.numbers[which])
+            for block, which in zip(self.lowered.blocks, moving, strict=True)
+            if which.any()
+        )
+        return replace(self.lowered, blocks=tuple(blocks))
+
     def _evaluated(self, point: ReceptancePoint, unknowns: np.ndarray) -> tuple[Evaluation, np.ndarray]:
         # Displacements by the loads and by what contacts do beyond their reference are in balance: the residual is one
         # of displacements, and needs no stiffness of the structure.
@@ -99,10 +110,7 @@ class ReceptanceBalance:
         self, omega: float, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...]
     ) -> tuple[tuple[ActiveCells, ...], np.ndarray]:
         """Jacobians of the elements that do not do what their reference says, and slopes of all forces by ω."""
-        moving = [
-            self._moving(block, unknowns, deviation, seen)
-            for block, seen in zip(self.lowered.blocks, states, strict=True)
-        ]
+        moving = self._moving(unknowns, deviation, states)
         slopes = self.elements.slopes(omega, unknowns, moving)
         cells = [self._beyond(rows, local, self.reference[rows]) for rows, local in slopes.laws]
         for block, which, (rows, local) in zip(self.lowered.blocks, moving, slopes.contacts, strict=True):
@@ -112,13 +120,19 @@ class ReceptanceBalance:
                 cells.append(self._beyond(rows, local, self.reference[rows] * shares))
         return tuple(cells), slopes.by_omega
 
-    def _moving(
+    def _moving(self, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...]) -> list[np.ndarray]:
+        """Whether contacts of each block are active, (cells,): their force differs from that of their reference by more
+        than a constant normal one, or they are in another state. A slider that moves before the motion is periodic, or
+        slips between two samples, shows in the force alone.
+        """
+        return [
+            self._moving_ones(block, unknowns, deviation, seen)
+            for block, seen in zip(self.lowered.blocks, states, strict=True)
+        ]
+
+    def _moving_ones(
         self, block: FrictionBlock, unknowns: np.ndarray, deviation: np.ndarray, states: np.ndarray
     ) -> np.ndarray:
-        """Whether contacts are active, (cells,): their force differs from that of their reference by more than a
-        constant normal one, or they are in another state. A slider that moves before the motion is periodic, or slips
-        between two samples, shows in the force alone.
-        """
         rows = block.rows
         reference, size = self.reference[rows], np.abs(unknowns[rows]).max(axis=(1, 2))
         beyond = np.abs(deviation[rows])

@@ -229,12 +229,6 @@ class Condensation:
                 raise _resonance(s[order : order + 1], f", at {moving_names(self.names, np.abs(self.back[:, mode]))},")
         return np.where(still, NEARLY * np.abs(self.inner[0]), inner)
 
-    def interior_slope(self, point: CondensedStructure, retained: np.ndarray) -> np.ndarray:
-        """Derivative of the interior coordinates by ω where the retained ones (orders, q) are held, (orders, l)."""
-        s, interior, spin = point.frequencies, point.interior(retained), self._spin(point.omega)
-        pushed = self._loads_at(point.omega)[1][1][:, :, None] - self._slope(self.below, s, spin) @ retained[:, :, None]
-        return self.solve(s, pushed - self._inner_slope(s, interior[:, :, None], spin))[:, :, 0]
-
     def _modal(self, blocks: list[np.ndarray]) -> list[np.ndarray]:
         """Interior matrices in modes with q held: vectors where they are diagonal. Without modes, as they are."""
         stiffness, mass, *damped = blocks

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.sparse import issparse
 
 from dalembert.errors import SolveError
+from dalembert.structure.structure import MATRICES
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties
@@ -87,15 +88,16 @@ class ContactsStuck:
             self._of_series.clear()
             known.key, known.structure = self._key, self._structure
         if series.orders not in self._of_series:
-            self._of_series[series.orders] = Receptances(self._structure, series, loads)
+            self._of_series[series.orders] = Receptances(self._structure, series, loads, lowered.spin)
         return self._of_series[series.orders]
 
     @cached_property
     def _key(self) -> bytes:
         """Hash of all that the structure depends on."""
         structure, digest = self.lowered.structure, hashlib.sha256()
-        for matrix in (structure.stiffness, structure.mass, structure.damping, structure.loss, self.lowered.matrix):
+        for name, matrix in [*((name, getattr(structure, name)) for name in MATRICES), ("rows", self.lowered.matrix)]:
             if matrix is not None:
+                digest.update(name.encode())
                 parts = (matrix.data, matrix.indices, matrix.indptr) if issparse(matrix) else (matrix,)
                 for part in parts:
                     digest.update(np.ascontiguousarray(part).tobytes())

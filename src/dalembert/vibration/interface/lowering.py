@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_array
+from scipy.sparse import csc_array, vstack
 
 from dalembert.errors import InputError, ModelError
 from dalembert.structure import Structure
@@ -71,7 +71,8 @@ class Lowered:
     """A vibrating system as arrays. ``row_names``: names of the coordinates that elements see, such as ``"foot.x"``;
     ``matrix`` (rows, n); ``contacts``: names of the friction contacts; ``functions``: rows of each element whose law is
     a function of arrays; ``speed``: of the rotor parts, rad/s, or "synchronous";
-    ``periods``: of the excitation in a period of the motion.
+    ``periods``: of the excitation in a period of the motion; ``measured``: row of a degree of freedom whose response is
+    measured, if there is one; ``added``: whether no element sees that row, so that it was added as the last one.
     """
 
     structure: Structure
@@ -84,6 +85,24 @@ class Lowered:
     functions: tuple[tuple[np.ndarray, UserElement], ...]
     speed: complex | str = 0.0
     periods: int = 1
+    measured: int | None = None
+    added: bool = False
+
+    def measuring(self, dof: int) -> "Lowered":
+        """The same with a row of a degree of freedom, so that its displacement is known where those of elements are."""
+        entries, column = np.diff(self.matrix.tocsr().indptr), self.matrix[:, [dof]].toarray()[:, 0]
+        known = np.flatnonzero((entries == 1) & (column == 1))
+        if len(known):
+            return replace(self, measured=int(known[0]))
+        unit = csc_array(([1.0], ([0], [dof])), shape=(1, self.structure.size))
+        names = (*self.row_names, self.structure.dofs.names[dof])
+        matrix = csc_array(vstack([self.matrix, unit]))
+        return replace(self, row_names=names, matrix=matrix, measured=len(names) - 1, added=True)
+
+    @property
+    def seen(self) -> int:
+        """Number of the rows that elements see, which are the first."""
+        return len(self.row_names) - self.added
 
     @cached_property
     def coordinates(self) -> Coordinates:

@@ -1,17 +1,18 @@
-"""Damping of a structure among its modes."""
-
-from typing import Any
+"""Damping, and the matrices of rotors, among the modes of a structure."""
 
 import numpy as np
 
 from dalembert.structure import Structure
 from dalembert.structure.eigenmodes import real_part
+from dalembert.structure.structure import OPTIONAL
 from dalembert.vibration.interface.condensation import COUPLED, coupled
 
 
 def couples(structure: Structure) -> bool:
-    """Whether the damping of a structure couples its modes, whatever the stiffnesses of its contacts."""
+    """Whether the damping of a structure, or a rotor, couples its modes, whatever the stiffnesses of its contacts."""
     damping, mass = structure.damping, real_part(structure.mass)
+    if structure.rotates:
+        return True
     if structure.loss is not None and abs(real_part(structure.loss)).max() > 0:
         return True
     if damping is None or not abs(damping).max():
@@ -22,15 +23,10 @@ def couples(structure: Structure) -> bool:
     return bool(abs(damping - factor * mass).max() > COUPLED * abs(damping).max())
 
 
-def modal_damping(structure: Structure, shapes: np.ndarray) -> list[np.ndarray]:
-    """Return Vᵀ C V and Vᵀ D V: diagonals (modes,) where they couple no modes, else (modes, modes)."""
-    return [
-        np.zeros(shapes.shape[1]) if matrix is None else _among(shapes, real_part(matrix))
-        for matrix in (structure.damping, structure.loss)
-    ]
-
-
-def _among(shapes: np.ndarray, matrix: Any) -> np.ndarray:
-    """Return Vᵀ C V, or its diagonal where it couples no modes."""
-    among = shapes.T @ (matrix @ shapes)
-    return among if coupled(among) else np.diag(among).copy()
+def modal_damping(structure: Structure, shapes: np.ndarray) -> dict[str, np.ndarray]:
+    """Return Vᵀ C V and the like, by the names of the matrices that a structure has besides stiffness and mass:
+    diagonals (modes,) where none of them couples modes, else all as (modes, modes).
+    """
+    matrices = {name: matrix for name in OPTIONAL if (matrix := getattr(structure, name)) is not None}
+    modal = {name: shapes.T @ (real_part(matrix) @ shapes) for name, matrix in matrices.items()}
+    return modal if any(map(coupled, modal.values())) else {name: np.diag(part).copy() for name, part in modal.items()}

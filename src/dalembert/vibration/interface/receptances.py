@@ -3,13 +3,15 @@ r"""Receptances of a structure at the rows of its elements, at any frequency, wi
 With the compliance G_0 and the modes of the structure whose contacts stick
 (:mod:`dalembert.vibration.interface.stuck_structure`),
 
-.. math:: G(s) = B (K_r - s^2 M + i s C + i\,\mathrm{sign}(s) D)^{-1} B^T
-          = G_0 + B V [(1 - s^2 \mu + i s \hat C + i\,\mathrm{sign}(s) \hat D)^{-1} - 1] V^T B^T.
+.. math:: G(s) = B (K_r - s^2 M + i s C + i\,\mathrm{sign}(s) D + \Omega (N + i s G))^{-1} B^T
+          = G_0 + B V [(1 + \hat Z(s))^{-1} - 1] V^T B^T,
 
-With all modes this is exact. Without the fast ones it is modal acceleration: their compliance is in :math:`G_0`, and
-what is left out of each is its inertia, :math:`s^2\mu` of it.
+where :math:`\hat Z` are the terms beside the stiffness among the modes. With all modes this is exact. Without the fast
+ones it is modal acceleration: their compliance is in :math:`G_0`, and what is left out of each is its inertia,
+:math:`s^2\mu` of it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -19,6 +21,7 @@ import numpy as np
 from dalembert.errors import SolveError
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensed_structure import NEARLY, norm
+from dalembert.vibration.interface.dynamic_stiffness import combined, factors, slope_factors
 from dalembert.vibration.interface.free_motions import FLOATING
 from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.stuck_structure import StuckStructure
@@ -146,16 +149,19 @@ MANY = 8
 
 @dataclass(frozen=True)
 class Receptances:
-    """A structure whose contacts stick, with the harmonics of a series. ``loads``: forces in these harmonics."""
+    """A structure whose contacts stick, with the harmonics of a series. ``loads``: forces in these harmonics; ``spin``:
+    speed of the rotor and its derivative, over ω.
+    """
 
     stuck: StuckStructure
     series: Fourier
     loads: Loads
+    spin: Callable[[float], tuple[float, float]]
 
     def at(self, omega: float) -> ReceptancePoint:
         """The receptances at ω, rad/s."""
         s = np.array(self.series.orders, dtype=float) * omega
-        gains, slopes, still = self._gains(s)
+        gains, slopes, still = self._gains(s, self.spin(omega))
         weights, weight_slopes = self.loads.weights(omega)
         (static, modal), (static_slope, modal_slope) = (
             [np.tensordot(factors, parts, 1) for parts in self._loaded] for factors in (weights, weight_slopes)
@@ -193,17 +199,15 @@ class Receptances:
             result[:, pushed] = self.stuck.rows @ self.stuck.solve(loads[:, pushed])
         return static, patterns @ self.stuck.shapes
 
-    def _gains(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """1/q - 1 with q = 1 - s²μ + i s c + i sign(s) d, its derivative by ω, and whether a mode has q = 0."""
+    def _gains(self, s: np.ndarray, spin: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """1/q - 1 with q = 1 + Ẑ, its derivative by ω, and whether a mode has q = 0."""
         stuck, orders = self.stuck, np.array(self.series.orders, dtype=float)
-        full = stuck.damping.ndim == 2 or stuck.loss.ndim == 2
-        inertias, damping, loss = (
-            np.diag(part) if full and part.ndim == 1 else part for part in (stuck.inertias, stuck.damping, stuck.loss)
-        )
-        s, orders = (values.reshape(-1, *[1] * inertias.ndim) for values in (s, orders))
+        full = any(part.ndim == 2 for part in stuck.damping.values())
+        matrices = {"mass": np.diag(stuck.inertias) if full else stuck.inertias, **stuck.damping}
+        s, orders = (values.reshape(-1, *[1] * (1 + full)) for values in (s, orders))
         # q - 1, which is small for fast modes: 1/q - 1 = -(q - 1)/q has no cancellation.
-        beyond = -(s**2) * inertias + 1j * s * damping + 1j * np.sign(s) * loss
-        slope = orders * (-2 * s * inertias + 1j * damping)
+        beyond = combined(factors(matrices, s, spin[0]), matrices)
+        slope = combined(slope_factors(matrices, orders, s, spin), matrices)
         if not full:
             # An undamped mode at its frequency, with half of the digits of both terms: contacts that slip detune it.
             still = np.abs(1 + beyond) < NEARLY

@@ -23,12 +23,11 @@ Solve = Callable[[np.ndarray], np.ndarray]
 
 
 class StuckModes(NamedTuple):
-    """Modes with Vᵀ K_r V = 1: V (n, modes), μ (modes,) and the damping, as `StuckStructure` has them."""
+    """Modes with Vᵀ K_r V = 1: V (n, modes), μ (modes,) and damping, as `StuckStructure` has them."""
 
     shapes: np.ndarray
     inertias: np.ndarray
-    damping: np.ndarray
-    loss: np.ndarray
+    damping: dict[str, np.ndarray]
 
 
 def stuck_modes(structure: Structure, stiffness: Any, mass: Any, solve: Solve, highest: float) -> StuckModes:
@@ -38,13 +37,13 @@ def stuck_modes(structure: Structure, stiffness: Any, mass: Any, solve: Solve, h
         inertias, shapes = _all_modes(mass, stiffness)
     else:
         inertias, shapes = _slow_modes(csc_array(mass), csc_array(stiffness), solve, highest)
-    damping, loss = modal_damping(structure, shapes)
-    if max(damping.ndim, loss.ndim) == 2 and len(inertias) > COUPLED_MODES:
+    damping = modal_damping(structure, shapes)
+    if any(part.ndim == 2 for part in damping.values()) and len(inertias) > COUPLED_MODES:
         # A full matrix of all modes for each harmonic costs too much: the slow ones, as of a large structure.
         count = max(COUPLED_MODES, int(np.sum(highest**2 * inertias > STATIC)))
         inertias, shapes = inertias[:count], np.ascontiguousarray(shapes[:, :count])
-        damping, loss = modal_damping(structure, shapes)
-    return StuckModes(shapes, inertias, damping, loss)
+        damping = modal_damping(structure, shapes)
+    return StuckModes(shapes, inertias, damping)
 
 
 def _all_modes(mass: Any, stiffness: Any) -> tuple[np.ndarray, np.ndarray]:

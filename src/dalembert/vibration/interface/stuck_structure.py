@@ -30,8 +30,9 @@ class StuckStructure:
     """A structure with the reference stiffnesses of its elements' rows.
 
     ``rows`` (rows, n): B; ``reference`` (rows,): r, N/m; ``solve``: K_r⁻¹ times columns (n, -); ``shapes`` (n, modes):
-    V; ``inertias`` (modes,): μ, s²; ``damping``, ``loss``: Vᵀ C V and Vᵀ D V, as diagonals (modes,) where they couple
-    no modes, else (modes, modes); ``free`` (rows, motions): the rows in motions that the structure does not resist.
+    V; ``inertias`` (modes,): μ, s²; ``damping``: Vᵀ C V, and the same of hysteretic damping and of rotors, by the names
+    of the matrices, as diagonals (modes,) where none of them couples modes, else (modes, modes); ``free``
+    (rows, motions): the rows in motions that the structure does not resist.
     """
 
     rows: Any
@@ -39,8 +40,7 @@ class StuckStructure:
     solve: Solve = field(repr=False)
     shapes: np.ndarray
     inertias: np.ndarray
-    damping: np.ndarray
-    loss: np.ndarray
+    damping: dict[str, np.ndarray]
     free: np.ndarray
     _kept: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 

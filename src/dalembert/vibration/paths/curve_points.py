@@ -35,6 +35,17 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
     return problem.solve(unknowns, problem.omega(curve.frequencies[point]), samples)
 
 
+def measured_again(problem: Equations, before: Equations, solution: Solution) -> Solution:
+    """Return a solution of a system in the unknowns of equations that measure one of its degrees of freedom."""
+    # Rows that elements see, then the one that was added.
+    rows = before.balance(solution.samples).displacements(solution.unknowns)
+    if problem.lowered.added:
+        dof = problem.lowered.matrix[[-1]].nonzero()[1]
+        rows = np.vstack([rows, response_of(before, solution, dof)])
+    unknowns = rows if problem.by_receptances else rows[problem.lowered.coordinates.rows]
+    return problem.solve(unknowns, solution.omega, solution.samples)
+
+
 def _in_unknowns_of(problem: Equations, curve: FrequencyCurve, unknowns: np.ndarray) -> np.ndarray:
     """Return the unknowns (q, coefficients) of a point of a curve as those of equations with another solver."""
     by_receptances = curve.provenance["method"].get("solver") == RECEPTANCE

@@ -63,9 +63,8 @@ class Controlled:
 
     def __init__(self, problem: Equations, held: HeldAmplitude) -> None:
         self.problem, self._load = problem, 1.0
-        row = problem.lowered.structure.dofs.index(held.dof, "HeldAmplitude")
         series = problem.balance(problem.method.first_samples).series
-        self._amplitude, self._response = held.amplitude, ResponseRow(problem.condensation, series, row)
+        self._amplitude, self._response = held.amplitude, ResponseRow(series, problem.measured)
         if not np.any(problem.lowered.loads(series).patterns[:, series.orders.index(1)]):
             raise InputError(
                 "HeldAmplitude: no force acts in the first harmonic, so none holds its amplitude. Add a HarmonicForce"
@@ -95,7 +94,7 @@ class Controlled:
 
     def _solved(self, unknowns: np.ndarray, omega: float, samples: int, load: float) -> Solution:
         """Solve from a guess of the motion and of the load, which is the ``omega`` of the solution."""
-        whole = self.problem.condensation.at(omega)
+        whole = self.problem.at(omega)
         constraint = AmplitudeHeld(self._response, self._amplitude, omega, norm(unknowns) or 1.0, load)
         return self.problem.solve(unknowns, load, samples, constraint, at=whole.loaded)
 
@@ -119,7 +118,7 @@ class Controlled:
 
     def _guesses(self, omega: float) -> Iterator[Solution]:
         """Yield motions at loads whose amplitudes are next to the held one."""
-        whole, samples = self.problem.condensation.at(omega), self.method.first_samples
+        whole, samples = self.problem.at(omega), self.method.first_samples
         loading = Loading(self.problem.balance(samples), self.method, whole)
         known = loading.first(LEAST_LOAD)
         if not known.converged:
@@ -142,4 +141,4 @@ class Controlled:
             below = solution
 
     def _size(self, solution: Solution) -> float:
-        return abs(self._response.phasor(solution.unknowns, solution.condensed))
+        return abs(self._response.phasor(solution.unknowns))

@@ -8,7 +8,7 @@ import numpy as np
 
 from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
-from dalembert.vibration.balance.arc_length import JOINED, PathPoint, along
+from dalembert.vibration.balance.arc_length import ACROSS_FOLD, JOINED, MANY_ROWS, PathPoint, along
 from dalembert.vibration.balance.conclusions import (
     Unconverged,
     free_findings,
@@ -30,7 +30,7 @@ from dalembert.vibration.paths.curve_points import observed, response_of, restar
 from dalembert.vibration.paths.motion_findings import open_findings, rotor_findings
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.responses.control import Controlled, HeldAmplitude
-from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged
+from dalembert.vibration.stability.bifurcations import FOLD, fold_findings, judged, rows_findings
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -101,19 +101,22 @@ class PosedCurve:
 
     def solved(self, method: HarmonicBalance) -> HarmonicBalance:
         """Return the method with a way to write the structure."""
-        return replace(method, solver=chosen_solver(lower(self.system), method, self.stability))
+        return replace(method, solver=chosen_solver(lower(self.system), method))
 
     def equations(self, method: HarmonicBalance) -> Equations:
         """The equations of the system with the harmonics of a method."""
-        highest = float(np.max(self.omegas))
-        return equations(self.system, method, self.checkpoint, stability=self.stability, highest=highest)
+        highest, control = float(np.max(self.omegas)), self.control
+        measured = None if control is None else self.system.structure.dofs.index(control.dof, "HeldAmplitude")
+        return equations(
+            self.system, method, self.checkpoint, stability=self.stability, highest=highest, measured=measured
+        )
 
 
 @dataclass(frozen=True)
 class FollowedCurve:
     """The points of a curve with a number of harmonics. ``arrays``: those that a curve keeps, by name, (points, ...).
-    ``unconverged``: causes, of the points that are not converged. ``across_fold``: frequencies, Hz, of the points whose
-    stability is unknown because of a fold. ``largest``: the largest motion, None if it is not to be checked.
+    ``unconverged``: causes, of the points that are not converged. ``unjudged``: causes of unknown stability, with the
+    frequencies of the points, Hz. ``largest``: the largest motion, None if it is not to be checked.
     ``left_range``: whether the path leaves the range and comes back; ``end_inside``: why it ends inside
     its range, if it does.
     """
@@ -123,7 +126,7 @@ class FollowedCurve:
     arrays: dict[str, np.ndarray]
     markers: tuple[tuple[str, int], ...]
     unconverged: tuple[Unconverged, ...]
-    across_fold: tuple[float, ...]
+    unjudged: tuple[tuple[str, float], ...]
     largest: Solution | None
     left_range: bool = False
     end_inside: str = ""
@@ -136,14 +139,14 @@ def follow(
     rows = observed(problem.lowered, posed.observe)
     dofs = tuple(problem.lowered.structure.dofs.names[row] for row in rows)
     points = _points(posed, problem, start)
-    records, causes, across_fold, done = [], [], [], 0.0
+    records, causes, unjudged, done = [], [], [], 0.0
     top: Solution | None = None
     left_range, end_inside = False, ""
     for point in judged(problem, points, located=posed.is_path) if stability else points:
         solution = point.solution
         records.append(_record(problem, point, rows))
         causes.append(unconverged(problem, solution))
-        across_fold += [problem.hertz(solution.omega)] * point.across_fold
+        unjudged += [(point.unjudged, problem.hertz(solution.omega))] * bool(point.unjudged)
         top = largest(top, solution) if check else None
         left_range, end_inside = left_range or point.returned, end_inside or point.end
         if posed.on_point is not None:
@@ -155,7 +158,7 @@ def follow(
     markers = tuple((marker, row) for row, record in enumerate(records) if (marker := record.pop("marker")))
     arrays = {name: np.array([record[name] for record in records]) for name in records[0]}
     lost = tuple(filter(None, causes))
-    return FollowedCurve(problem, dofs, arrays, markers, lost, tuple(across_fold), top, left_range, end_inside)
+    return FollowedCurve(problem, dofs, arrays, markers, lost, tuple(unjudged), top, left_range, end_inside)
 
 
 def until_joined(points: Iterator[PathPoint], broken: np.ndarray) -> Iterator[PathPoint]:
@@ -196,13 +199,17 @@ def conclude(posed: PosedCurve, followed: FollowedCurve) -> FrequencyCurve:
     problem, arrays = followed.equations, followed.arrays
     method, frequencies, converged = problem.method, arrays["frequencies"], arrays["converged"]
     limits = problem.hertz(posed.omegas[0]), problem.hertz(posed.omegas[-1])
+    unjudged = {
+        cause: [frequency for other, frequency in followed.unjudged if other == cause]
+        for cause in (ACROSS_FOLD, MANY_ROWS)
+    }
     ended: tuple[Finding, ...] = ()
     if posed.is_path:
         how = followed.end_inside, followed.left_range
         ended = end_findings(frequencies, converged, limits, "frequency", "Hz", *how)
     return FrequencyCurve(
         dofs=followed.dofs,
-        coordinates=problem.lowered.row_names,
+        coordinates=problem.lowered.row_names[: problem.lowered.seen],
         contacts=problem.lowered.contacts,
         orders=method.orders,
         **{**arrays, "stable": arrays["stable"].astype(np.int8)},
@@ -214,7 +221,8 @@ def conclude(posed: PosedCurve, followed: FollowedCurve) -> FrequencyCurve:
             *free_findings(problem),
             *open_findings(problem.lowered, arrays["forces"][converged], arrays["states"][converged]),
             *rotor_findings(problem.lowered, float(np.max(posed.omegas))),
-            *fold_findings(followed.across_fold, frequencies[arrays["fold"]], method.highest),
+            *fold_findings(unjudged[ACROSS_FOLD], frequencies[arrays["fold"]], method.highest),
+            *rows_findings(unjudged[MANY_ROWS]),
             *(() if followed.largest is None else truncation_findings(problem, followed.largest)),
         ),
     )
@@ -227,8 +235,8 @@ def _record(problem: Equations, point: PathPoint, rows: np.ndarray) -> dict[str,
     instants = np.arange(PHASES) * solution.samples // PHASES
     for block, block_states in zip(lowered.blocks, solution.evaluation.states, strict=True):
         np.maximum.at(states, block.contacts, block_states[:, instants])
-    response, forces = response_of(problem, solution, rows), solution.evaluation.forces
-    displacements = problem.balance(solution.samples).displacements(solution.unknowns)
+    response, forces = response_of(problem, solution, rows), solution.evaluation.forces[: lowered.seen]
+    displacements = problem.balance(solution.samples).displacements(solution.unknowns)[: lowered.seen]
     if not solution.converged:
         response, displacements, forces = (np.full_like(array, np.nan) for array in (response, displacements, forces))
     return {

@@ -206,7 +206,7 @@ class FrequencyResponse:
     def balance(self) -> HarmonicBalance:
         """The method with the number of harmonics and the solver, which are chosen when they are first needed."""
         system = self.system(self.parameters.start)
-        method = replace(self.method, solver=chosen_solver(lower(system), self.method, stability=False))
+        method = replace(self.method, solver=chosen_solver(lower(system), self.method))
         if not method.automatic:
             return method
         curve = frequency_response(system, self.frequencies, method)

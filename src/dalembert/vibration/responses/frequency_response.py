@@ -9,7 +9,7 @@ from dalembert.arguments import takes_checked
 from dalembert.errors import InputError, require_known
 from dalembert.forward import Checkpoint
 from dalembert.threads import single_thread
-from dalembert.vibration.balance.equations import by_stiffness
+from dalembert.vibration.balance.equations import require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.truncation import (
     RELIABLE,
@@ -95,8 +95,7 @@ def frequency_response(
     InputError
         For frequencies that are not positive, unknown degrees of freedom, a start that does not fit, and stability of
         a structure that is too large for dense matrices, has hysteretic damping, or where several degrees of freedom
-        share one mass. For a held amplitude together with stability, arc length, a start, receptances or
-        ``harmonics="auto"``.
+        share one mass. For a held amplitude together with stability, arc length, a start or ``harmonics="auto"``.
     ModelError
         For rigid contacts that depend on each other, and for mean forces along a motion that nothing holds.
 
@@ -136,7 +135,8 @@ def frequency_response(
         for what in (what for what, present in refused.items() if present):
             raise InputError(f"frequency_response: a held amplitude was asked for with {what}. Leave one of them out")
         settings["control"] = asdict(control)
-        method, check = by_stiffness(method, "frequency_response with a held amplitude"), False
+        require_one_period(method, "frequency_response with a held amplitude")
+        check = False
     posed = PosedCurve(system, omegas, is_path, settings, observe, start, stability, checkpoint, on_point, control)
     method = posed.solved(method)
     if method.automatic:

@@ -9,7 +9,6 @@ from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.fourier import synthesis
 from dalembert.vibration.paths.amplitudes import Amplitude
-from dalembert.vibration.paths.curve_points import response_of
 
 WIDTH = 0.1
 """Change of ω, as part of itself, that counts as much along the path as the whole motion."""
@@ -41,16 +40,15 @@ def upwards(solution: Solution) -> np.ndarray:
 
 @dataclass(frozen=True)
 class PeakSearch:
-    """Search of the largest amplitude of a row of the structure along a path."""
+    """Search of the largest amplitude of the measured degree of freedom along a path."""
 
-    row: int
     size: Amplitude
 
     def search(self, problem: Equations, solution: Solution, bend: float) -> tuple[Peak | None, int]:
         """Return the peak next to a solution, and the number of solutions."""
         width = WIDTH * solution.omega
         direction = direction_at(solution, upwards(solution), width)
-        rise = self._rise(problem, solution, direction, PathTangent(solution, direction, width).size, width)
+        rise = self._rise(problem, solution, direction, PathTangent(solution, direction, width).size)
         if rise < 0:
             rise, direction = -rise, -direction
         length = FIRST if np.isnan(bend) else float(np.clip(BEYOND * abs(rise / bend), SHORTEST, LONGEST))
@@ -62,7 +60,7 @@ class PeakSearch:
                 if length < SHORTEST:
                     return None, count
                 continue
-            beyond = self._rise(problem, ahead, onward, path.size, width)
+            beyond = self._rise(problem, ahead, onward, path.size)
             # The slope of the amplitude changes its sign within this step: Brent's method narrows it.
             if beyond < 0:
                 peak, spent = self._narrowed(problem, path, ahead, (rise, beyond), length)
@@ -78,27 +76,21 @@ class PeakSearch:
 
         def rise(part: float) -> tuple[Solution, float]:
             solution, onward = path.step(problem, part)
-            value = float("nan") if onward is None else self._rise(problem, solution, onward, path.size, path.width)
+            value = float("nan") if onward is None else self._rise(problem, solution, onward, path.size)
             return solution, value
 
         tried = {0.0: (path.known, rises[0]), length: (ahead, rises[1])}
         solution = zero_between(rise, length, tried, NARROW)
         if solution is None:
             return None, len(tried) - 2
-        amplitude = float(self.size.of(response_of(problem, solution)[self.row]))
+        amplitude = float(self.size.of(problem.measured @ solution.unknowns))
         return Peak(np.nan, problem, solution, amplitude, (rises[1] - rises[0]) / length), len(tried) - 2
 
-    def _rise(self, problem: Equations, solution: Solution, direction: np.ndarray, size: float, width: float) -> float:
-        """Derivative of the logarithm of the amplitude along the path."""
-        # ∇a · (dU, dω)/a with dx_l = -Z_ll⁻¹ Z_lq dU + (∂x_l/∂ω) dω
-        series, point = problem.balance(solution.samples).series, solution.condensed
-        change = series.phasors(direction[:-1].reshape(solution.unknowns.shape) * size)
-        retained = series.phasors(solution.unknowns)
-        interior = problem.condensation.interior_slope(point, retained) * (direction[-1] * width)
-        interior = interior - (point.follow @ change[:, :, None])[:, :, 0]
-        motion = response_of(problem, solution)[self.row]
-        moved = series.coefficients(problem.condensation.full(change, interior))[self.row]
-        return float(_gradient(self.size, motion) @ moved) / float(self.size.of(motion))
+    def _rise(self, problem: Equations, solution: Solution, direction: np.ndarray, size: float) -> float:
+        """Derivative of the logarithm of the amplitude along the path: ∇a · dU/a."""
+        change = direction[:-1].reshape(solution.unknowns.shape) * size
+        motion = problem.measured @ solution.unknowns
+        return float(_gradient(self.size, motion) @ (problem.measured @ change)) / float(self.size.of(motion))
 
 
 def _gradient(size: Amplitude, motion: np.ndarray) -> np.ndarray:

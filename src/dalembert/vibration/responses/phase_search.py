@@ -12,7 +12,6 @@ from dalembert.vibration.balance.held_response import PhaseHeld, ResponseRow
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.paths.amplitudes import Amplitude
-from dalembert.vibration.paths.curve_points import response_of
 from dalembert.vibration.responses.peak_search import FIRST, LONGEST, MOST_STEPS, WIDTH, Peak, upwards
 
 
@@ -31,9 +30,9 @@ class PhaseSearch:
             solves += spent + 1
             locked = problem.solve(near.unknowns, near.omega, near.samples, constraint)
             # The opposite phase has the same condition.
-            opposite = constraint.leads(locked.unknowns, locked.omega, locked.condensed)
+            opposite = constraint.leads(locked.unknowns, locked.omega)
             if locked.converged and locked.omega > 0 and not opposite:
-                amplitude = float(self.size.of(response_of(problem, locked)[self.row]))
+                amplitude = float(self.size.of(problem.measured @ locked.unknowns))
                 return Peak(np.nan, problem, locked, amplitude), solves
         return None, solves
 
@@ -66,7 +65,7 @@ class PhaseSearch:
 
     def _constraint(self, problem: Equations, solution: Solution) -> PhaseHeld:
         series = problem.balance(solution.samples).series
-        response = ResponseRow(problem.condensation, series, self.row)
+        response = ResponseRow(series, problem.measured)
         size = float(np.linalg.norm(solution.unknowns)) or 1.0
         return PhaseHeld(response, self._force(problem, series), self.phase, size, WIDTH * solution.omega)
 

@@ -7,7 +7,7 @@ From one value of the parameter to the next the solution is corrected on a plane
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -19,14 +19,15 @@ from dalembert.forward import Checkpoint
 from dalembert.forward.builders import check_function
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import direction_at
-from dalembert.vibration.balance.equations import Equations, by_stiffness, equations
+from dalembert.vibration.balance.equations import Equations, chosen_solver, equations, require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.balance.truncation import ForcedLevel, Truncation, choice_findings, enough_harmonics, hardest
+from dalembert.vibration.interface.contacts_stuck import KnownStructures
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.curve_points import restarted
+from dalembert.vibration.paths.curve_points import measured_again, restarted
 from dalembert.vibration.responses.followed_curve import ARC_LENGTH
 from dalembert.vibration.responses.frequency_response import frequency_response
 from dalembert.vibration.responses.peak_search import WIDTH, Peak, PeakSearch, upwards
@@ -110,10 +111,13 @@ def track_resonance(
     ([3.63, 3.68, 5.79], 2.0)
     """
     numbers = values_of(values, "track_resonance", parameter)
-    method = by_stiffness(method or HarmonicBalance(), "track_resonance").keeping(highest_order(kind))
+    method = (method or HarmonicBalance()).keeping(highest_order(kind))
+    require_one_period(method, "track_resonance")
     check_function("track_resonance", builder, [parameter])
     first = builder(**{parameter: float(numbers[0])})
-    name = (names := lower(first).structure.dofs).names[row := names.index(dof)]
+    lowered = lower(first)
+    method = replace(method, solver=chosen_solver(lowered, method))
+    name = (names := lowered.structure.dofs).names[row := names.index(dof)]
     Amplitude(kind, method.first().orders)  # an unknown kind is refused before a curve is followed
     if phase is not None and not np.isfinite(phase):
         raise InputError(f"track_resonance: phase is {phase}; expected a number in rad")
@@ -155,8 +159,11 @@ class _PosedTrack:
     phase: float | None
     checkpoint: Checkpoint | None
 
+    known: KnownStructures = field(default_factory=KnownStructures)
+
     def equations(self, value: float, level: HarmonicBalance) -> Equations:
-        return equations(self.builder(**{self.parameter: value}), level, self.checkpoint)
+        system = self.builder(**{self.parameter: value})
+        return equations(system, level, self.checkpoint, known=self.known, measured=self.row)
 
 
 def _first_curve(
@@ -184,9 +191,10 @@ def _follow(
         sizes = Amplitude(posed.kind, curve.orders).of(curve.harmonics(posed.dof))
         if not np.any(np.isfinite(sizes)):
             raise InputError("track_resonance: no point of the first curve was found; begin with another window")
-        top = restarted(first, curve, int(np.nanargmax(sizes)), "track_resonance")
+        plain = equations(posed.builder(**{posed.parameter: value}), level, posed.checkpoint, known=posed.known)
+        top = measured_again(first, plain, restarted(plain, curve, int(np.nanargmax(sizes)), "track_resonance"))
         size = Amplitude(posed.kind, level.orders)
-        seeker = PeakSearch(posed.row, size) if posed.phase is None else PhaseSearch(posed.row, size, posed.phase)
+        seeker = PeakSearch(size) if posed.phase is None else PhaseSearch(posed.row, size, posed.phase)
         peaks = list(_followed(problem, seeker, posed.values, Peak(value, first, top)))
         if not posed.method.automatic:
             return level, peaks, ()

@@ -10,6 +10,7 @@ from dalembert.findings import Finding
 from dalembert.vibration.balance.arc_length import PathPoint, zero_between
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import CrossingPlane, Solution
+from dalembert.vibration.stability.modal_map import MOST_ROWS
 from dalembert.vibration.stability.stability import REAL, Exponents, exponents, remembers
 
 FOLD, TORUS, DOUBLING, BRANCH = "fold", "torus", "period doubling", "branch point"
@@ -43,7 +44,7 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
             # Between two judged points this one says nothing, and a bifurcation between them cannot be placed.
             if not current.judged and np.isfinite(current.error):
                 # A change of sign within the error is no bifurcation: points further on show whether there is one.
-                yield replace(point, across_fold=current.across_fold)
+                yield replace(point, unjudged=current.unjudged)
                 adjacent = False
                 continue
             kind = ""
@@ -56,7 +57,7 @@ def judged(problem: Equations, path: Iterable[PathPoint], located: bool) -> Iter
                 place = _located(problem, before, (point.solution, current)) if located and adjacent and kind else None
                 if place is not None:
                     # Where an exponent is zero, rounding decides whether it grows.
-                    stable = _said(before[1]) if replace(place[1], across_fold=False).judged else NOT_ASKED
+                    stable = _said(before[1]) if replace(place[1], unjudged="").judged else NOT_ASKED
                     marker = _kind(place[1], place[1], _rank(before[1], current))
                     yield PathPoint(place[0], stable=stable, marker=marker)
                     kind = ""
@@ -79,6 +80,20 @@ def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: in
     )
     values = {"points": len(apart), "lowest": low, "highest": high, "harmonics": harmonics}
     return (Finding("stability-near-fold", "warning", values, message, "Keep more harmonics."),)
+
+
+def rows_findings(frequencies: Sequence[float]) -> tuple[Finding, ...]:
+    """Return the finding on points whose stability was not computed. ``frequencies``: of these points, Hz."""
+    if not frequencies:
+        return ()
+    low, high = float(min(frequencies)), float(max(frequencies))
+    message = (
+        f"The stability of {counted(len(frequencies), 'point')} between {low:.6g} and {high:.6g} Hz is not known: more "
+        f"than {MOST_ROWS} displacements of contacts slip or open there."
+    )
+    values = {"points": len(frequencies), "lowest": low, "highest": high, "rows": MOST_ROWS}
+    advice = "Use fewer contacts, or compare these motions with integration in time."
+    return (Finding("stability-many-contacts", "warning", values, message, advice),)
 
 
 def _said(result: Exponents) -> int:

@@ -57,7 +57,9 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     """
     require_known("way", way, (AUTO, HILL, TIME_MAP), "floquet_multipliers")
     require_full_load(curve, "floquet_multipliers")
-    method = replace(HarmonicBalance(**curve.provenance["method"]), solver=STIFFNESS)
+    method = HarmonicBalance(**curve.provenance["method"])
+    if way == HILL:
+        method = replace(method, solver=STIFFNESS)
     problem = equations(system, method, stability=way != HILL)
     begin = restarted(problem, curve, point, "floquet_multipliers")
     factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)

@@ -4,12 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dalembert.vibration.balance.arc_length import ACROSS_FOLD, MANY_ROWS
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.balance.uncondensed import Uncondensed
 from dalembert.vibration.fourier import Fourier, in_orders
+from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.stability.hill import hill
+from dalembert.vibration.stability.modal_map import MOST_ROWS, active_rows, modal_map
 from dalembert.vibration.stability.time_map import monodromy
+from dalembert.vibration.system.requirements import require_viscous
 
 HILL, TIME_MAP, AUTO = "hill", "time map", "auto"
 NEUTRAL = 1e-8
@@ -37,21 +42,21 @@ FORGOTTEN = 1e-12
 @dataclass(frozen=True)
 class Exponents:
     """Floquet exponents of a periodic motion. ``values`` (exponents,), complex: in parts of ω, those that grow fastest
-    first; ``error``: of their real parts, in parts of ω; infinite where it is not known; ``across_fold``: whether they
-    belong to a motion on the other side of a fold; ``signed``: whether their number of real ones that grow is that of
-    the determinant of the balance.
+    first; ``error``: of their real parts, in parts of ω; infinite where it is not known; ``unjudged``: ACROSS_FOLD if
+    they belong to a motion on the other side of a fold, MANY_ROWS if they were not computed; ``signed``: whether their
+    number of real ones that grow is that of the determinant of the balance.
     """
 
     values: np.ndarray
     error: float = 0.0
-    across_fold: bool = False
+    unjudged: str = ""
     signed: bool = False
 
     @property
     def judged(self) -> bool:
         """Whether the sign of the fastest growth is known, and belongs to the motion."""
         growth = np.real(self.values)
-        if self.across_fold:
+        if self.unjudged:
             return False
         if not growth.size or abs(growth[0]) >= self.error:
             return True
@@ -75,10 +80,13 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTO) -> Expone
     friction. The stiffness of a stop switches, so that its harmonics fall slowly. Where one is touched, the exponents
     are those with twice the harmonics, and their change is the error.
     """
-    if way == TIME_MAP or (way == AUTO and remembers(problem)):
+    if way == TIME_MAP or (way == AUTO and (problem.by_receptances or remembers(problem))):
         # Hill's matrix lacks the memory of sliders: multipliers of 2.7 for a motion whose largest is 0.94 (three masses
         # with sliders, cubic springs and a stop, at 1.63 rad/s).
-        values = _held(problem, problem.once(TIME_MAP, solution, lambda: _by_time_map(problem, solution)))
+        of_map = _by_modes if problem.by_receptances else _by_time_map
+        values = _held(problem, problem.once(TIME_MAP, solution, lambda: of_map(problem, solution)))
+        if not values.size and problem.nonlinear:
+            return Exponents(values, unjudged=MANY_ROWS)
         return _on_side(problem, solution, values, 0.0)
     values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
     stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
@@ -110,7 +118,7 @@ def _on_side(problem: Equations, solution: Solution, values: np.ndarray, error: 
         return Exponents(values, error, signed=bool(sign))
     nearest = int(np.argmin(np.where(real, np.abs(np.real(values)), np.inf))) if real.any() else -1
     if nearest < 0 or abs(np.real(values[nearest])) > SHIFTED:
-        return Exponents(values, error, across_fold=True)
+        return Exponents(values, error, ACROSS_FOLD)
     turned = values.copy()
     turned[nearest] = complex(-np.real(values[nearest]), np.imag(values[nearest]))
     return Exponents(sorted_by_growth(turned), error, signed=True)
@@ -135,12 +143,13 @@ def _sign(problem: Equations, solution: Solution) -> float:
     if every is problem:
         return solution.tangent.sign
     unknowns = in_orders(solution.unknowns, problem.method.orders, every.method.orders)
-    point = every.condensation.at(solution.omega)
-    return every.stiffness_balance(solution.samples).linearised(point, unknowns)[1].sign
+    return every.placed(unknowns, solution.omega, solution.samples).tangent.sign
 
 
 def _held(problem: Equations, values: np.ndarray) -> np.ndarray:
     """Return exponents with the pairs of free motions (position and velocity) at zero: rounding splits such pairs."""
+    if problem.by_receptances:
+        return values
     # Position and velocity along a free motion are a Jordan block of two zeros: rounding splits it by the root of eps.
     nearest = np.argsort(np.abs(values))[: 2 * problem.condensation.free.shape[1]]
     result = values.copy()
@@ -178,6 +187,24 @@ def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
     # The map goes from sample to sample, and so do the states that it takes from the elements.
     speed = problem.lowered.spin(solution.omega)[0]
     system = Uncondensed(problem.lowered, problem.condensation, series, events=False, speed=speed)
-    # Exponents from multipliers: the logarithm by 2π, in parts of ω; forgotten states have multiplier zero and none.
-    factors = np.linalg.eigvals(monodromy(system, linear, solution.unknowns, solution.omega)).astype(complex)
+    return _exponents(monodromy(system, linear, solution.unknowns, solution.omega))
+
+
+def _by_modes(problem: Equations, solution: Solution) -> np.ndarray:
+    """Return the same by receptances; none where the active elements have too many rows."""
+    require_viscous(problem.lowered.structure, "stability and Floquet multipliers")
+    balance, point = problem.balance(solution.samples), solution.point
+    assert isinstance(balance, ReceptanceBalance)
+    assert isinstance(point, ReceptancePoint)
+    lowered = balance.active(point, solution.unknowns)
+    if len(active_rows(lowered)) > MOST_ROWS:
+        return np.zeros(0, dtype=complex)
+    series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
+    return _exponents(modal_map(lowered, point, series, solution.unknowns, lowered.spin(solution.omega)[0]))
+
+
+def _exponents(period: np.ndarray) -> np.ndarray:
+    """Return exponents in parts of ω from the map over a period: the logarithm of the multipliers by 2π."""
+    # Forgotten states have multiplier zero, and no exponent.
+    factors = np.linalg.eigvals(period).astype(complex)
     return sorted_by_growth(np.log(factors[np.abs(factors) > FORGOTTEN]) / (2 * np.pi))

@@ -11,7 +11,6 @@ their velocities by an impulse; one that slips feels its normal force alone. Coo
 the end of each step.
 """
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -20,34 +19,11 @@ from scipy.linalg import cholesky
 from dalembert.errors import InputError
 from dalembert.vibration.balance.uncondensed import Uncondensed
 from dalembert.vibration.interface.lowering import ELASTIC
-from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK, TANGENTIAL
-from dalembert.vibration.laws.marched_sums import MarchedSums
+from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK
+from dalembert.vibration.stability.element_slopes import ElementSlopes, Laws, changes, element_slopes, gathered
 
 MEMORY = 4_000_000
 """Numbers that the steps made at once may have."""
-
-
-class Laws(NamedTuple):
-    """Linearised laws on the q retained coordinates and z internal numbers, at each sample. Internal numbers are the
-    places of slipping sliders, and, of other laws with a memory, their states and forces at the end of the step before.
-
-    ``reaction`` (samples, q, q): forces at the end of a step by displacements there; ``memory`` (samples, q, z): the
-    same by internal numbers at its begin; ``following`` (samples, z, q), ``keeping`` (samples, z, z): internal numbers
-    at the end by the same two; ``stiffness`` (samples, q, q), ``release`` (samples, q, z): the same forces by
-    displacements and internal numbers at the end, from which the next step begins; ``damping``, ``ended``
-    (samples, q, q), ``turning`` (samples, z, q): forces at the end of a step, forces from which the next one begins,
-    and internal numbers, by velocities there.
-    """
-
-    reaction: np.ndarray
-    memory: np.ndarray
-    following: np.ndarray
-    keeping: np.ndarray
-    stiffness: np.ndarray
-    release: np.ndarray
-    damping: np.ndarray
-    ended: np.ndarray
-    turning: np.ndarray
 
 
 class Held(NamedTuple):
@@ -63,18 +39,20 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
     slip. ``linear``, ``unknowns`` (q, coefficients): linear part of the balance, and the motion. A coordinate that only
     together with others has a mass is refused.
     """
-    mass = system.matrices[1]
+    mass, combination = system.matrices[1], system.lowered.coordinates.combination
     light = _massless(mass)
-    laws, constraints = _laws(system, unknowns, omega), _held(system, linear, unknowns, omega)
+    parts = list(element_slopes(system.lowered, system.series, combination @ unknowns, omega))
+    constraints = _held(system, linear, unknowns, omega)
     n, samples = len(mass), system.series.samples
-    states = 2 * n + laws.memory.shape[2]
-    starts = _changes(laws, constraints)
+    states = 2 * n + sum(part.laws.keeping.shape[1] for part in parts)
+    starts = _changes(parts, constraints)
     lengths = np.diff(np.append(starts, samples))
     result, chunk = np.eye(states), max(1, MEMORY // (states * (n + len(constraints.rows))))
     begins = constraints.active & ~np.roll(constraints.active, 1, axis=0)
     for first in range(0, len(starts), chunk):
         steps = starts[first : first + chunk]
-        matrices = _steps(system, laws, constraints, light, 2 * np.pi / omega / samples, steps)
+        begin, end = (gathered(parts, len(combination), at).combined(combination) for at in (steps - 1, steps))
+        matrices = _steps(system, begin, end, constraints, light, 2 * np.pi / omega / samples, steps)
         for t, step, length in zip(steps, matrices, lengths[first : first + chunk], strict=True):
             if begins[t].any():
                 # The impulse acts before the step that begins to hold.
@@ -84,25 +62,21 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
     return result
 
 
-def _changes(laws: Laws, constraints: Held) -> np.ndarray:
+def _changes(parts: list[ElementSlopes], constraints: Held) -> np.ndarray:
     """Samples from which steps are others than before; between them friction in one direction repeats the same."""
     samples = len(constraints.active)
-    begun = np.zeros(samples, dtype=bool)
-    begun[0] = True
-    ended = (np.roll(laws.stiffness, 1, axis=0), np.roll(laws.release, 1, axis=0))  # where the step before ended
-    ended += (np.roll(laws.ended, 1, axis=0),)
-    step_arrays = laws.reaction, laws.memory, laws.following, laws.keeping, laws.damping, laws.turning
-    for values in (*step_arrays, *ended, constraints.active, constraints.push):
+    begun = changes(parts, samples)
+    for values in (constraints.active, constraints.push):
         begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
     return np.flatnonzero(begun)
 
 
 def _steps(
-    system: Uncondensed, laws: Laws, constraints: Held, light: np.ndarray, h: float, steps: np.ndarray
+    system: Uncondensed, begin: Laws, end: Laws, constraints: Held, light: np.ndarray, h: float, steps: np.ndarray
 ) -> np.ndarray:
-    """Matrices (steps, states, states) from each sample's predecessor to it."""
+    """Matrices (steps, states, states) from each sample's predecessor to it. ``begin``, ``end``: the laws at both."""
     stiffness, mass, damping = system.matrices
-    n, q, z, r = len(mass), system.retained, laws.memory.shape[2], len(constraints.rows)
+    n, q, z, r = len(mass), system.retained, end.memory.shape[2], len(constraints.rows)
     # Coordinates without mass follow backward differences, as the trapezoidal rule would let their velocities
     # alternate.
     carried = 4 / h**2 * mass + 2 / h * damping
@@ -113,17 +87,17 @@ def _steps(
     matrix, right = np.zeros((len(steps), n + r, n + r)), np.zeros((len(steps), n + r, 2 * n + z))
     matrix[:, :n, :n] = carried + stiffness
     speeds = np.where(heavy[:q], 2 / h, 1 / h)  # by which velocities change with displacements
-    matrix[:, :q, :q] += laws.reaction[steps] + laws.damping[steps] * speeds
+    matrix[:, :q, :q] += end.reaction + end.damping * speeds
     matrix[:, n:, :q] = np.where(constraints.active[steps, :, None], constraints.rows, 0.0)
     matrix[:, :q, n:] = np.swapaxes(constraints.push[steps], 1, 2)
     # Rows that do not hold have a unit equation for their multiplier, so that the matrix has one size for all steps.
     matrix[:, np.arange(n, n + r), np.arange(n, n + r)] = ~constraints.active[steps]
     right[:, :n, :n] = carried - stiffness * heavy[:, None]
-    right[:, :q, :q] -= laws.stiffness[steps - 1] * heavy[:q, None]
-    right[:, :q, :q] += laws.damping[steps] * speeds
+    right[:, :q, :q] -= begin.stiffness * heavy[:q, None]
+    right[:, :q, :q] += end.damping * speeds
     right[:, :n, n : 2 * n] = 4 / h * mass
-    right[:, :q, n : n + q] += laws.damping[steps] - laws.ended[steps - 1] * heavy[:q, None]
-    right[:, :q, 2 * n :] = -laws.memory[steps] - laws.release[steps - 1] * heavy[:q, None]
+    right[:, :q, n : n + q] += end.damping - begin.ended * heavy[:q, None]
+    right[:, :q, 2 * n :] = -end.memory - begin.release * heavy[:q, None]
     right[:, n:, :q] = matrix[:, n:, :q]
     places = np.linalg.solve(matrix, right)[:, :n]
     result = np.zeros((len(steps), 2 * n + z, 2 * n + z))
@@ -135,8 +109,8 @@ def _steps(
     rates = speeds[:, None] * places[:, :q]
     rates[:, np.arange(q), np.arange(q)] -= speeds
     rates[:, np.arange(q), np.arange(n, n + q)] -= heavy[:q]
-    result[:, 2 * n :] = laws.following[steps] @ places[:, :q] + laws.turning[steps] @ rates
-    result[:, 2 * n :, 2 * n :] += laws.keeping[steps]
+    result[:, 2 * n :] = end.following @ places[:, :q] + end.turning @ rates
+    result[:, 2 * n :, 2 * n :] += end.keeping
     return result
 
 
@@ -189,95 +163,3 @@ def _held(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, omega: 
     if not rows:
         return Held(np.zeros((0, q)), np.zeros((samples, 0), dtype=bool), np.zeros((samples, 0, q)))
     return Held(np.array(rows), np.stack(active, axis=1), np.stack(push, axis=1))
-
-
-class _Memory(NamedTuple):
-    """Internal numbers of one element: the parts of :class:`Laws` that it adds, each (samples, ...)."""
-
-    memory: np.ndarray
-    following: np.ndarray
-    keeping: np.ndarray
-    release: np.ndarray
-    turning: np.ndarray
-
-
-def _laws(system: Uncondensed, unknowns: np.ndarray, omega: float) -> Laws:
-    """Of all elements but rigid contacts."""
-    combination, series = system.lowered.coordinates.combination, system.series
-    motion = combination @ unknowns
-    q, samples = unknowns.shape[0], series.samples
-    reaction, damping, parts = np.zeros((samples, q, q)), np.zeros((samples, q, q)), []
-    for rows, element in system.lowered.functions:
-        slopes = np.moveaxis(element.law(motion[rows] @ series.synthesis.T)[1], 2, 0)
-        reaction += combination[rows].T @ slopes @ combination[rows]
-    stiffness, ended = reaction.copy(), damping.copy()
-    for block in system.lowered.laws:
-        slopes = MarchedSums(block, series, events=False).derivatives(motion[block.rows], omega)
-        for element_slopes, rows in zip(slopes, block.rows, strict=True):
-            seen, columns = combination[rows], len(rows)
-            by_place, by_speed = (
-                seen.T @ element_slopes[:, :columns, first : first + columns] @ seen for first in (0, columns)
-            )
-            reaction += by_place
-            damping += by_speed
-            if block.states:
-                parts.append(_remembered(seen, element_slopes))
-            else:
-                stiffness += by_place
-                ended += by_speed
-    for block in (friction_block for friction_block in system.lowered.blocks if friction_block.kind == ELASTIC):
-        columns, tangents = block.rows.shape[1], block.tangents
-        slopes = MarchedSums(block.ruled, series, events=False).derivatives(motion[block.rows], omega)
-        for element_slopes, rows, numbers in zip(slopes, block.rows, block.numbers, strict=True):
-            seen = combination[rows]
-            reaction += seen.T @ element_slopes[:, :columns, :columns] @ seen
-            spring = element_slopes[:, :columns, :columns].copy()  # its force, whatever the slider did: k (u - z)
-            spring[:, :tangents] = np.eye(tangents, columns) * numbers[TANGENTIAL]
-            stiffness += seen.T @ spring @ seen
-            # A slider that sticks at all samples keeps its place: a multiplier of 1 that says nothing, and is left out.
-            if not np.allclose(
-                element_slopes[:, columns:, 2 * columns :], np.eye(tangents)
-            ):  # else where it rests is given
-                parts.append(_slid(seen, element_slopes, numbers[TANGENTIAL]))
-    ends = np.cumsum([0, *(part.keeping.shape[1] for part in parts)])
-    memory, release = np.zeros((2, samples, q, ends[-1]))
-    following, turning = np.zeros((2, samples, ends[-1], q))
-    keeping = np.zeros((samples, ends[-1], ends[-1]))
-    for part, (begin, end) in zip(parts, pairwise(ends), strict=True):
-        memory[:, :, begin:end], release[:, :, begin:end] = part.memory, part.release
-        following[:, begin:end], turning[:, begin:end] = part.following, part.turning
-        keeping[:, begin:end, begin:end] = part.keeping
-    return Laws(reaction, memory, following, keeping, stiffness, release, damping, ended, turning)
-
-
-def _slid(seen: np.ndarray, slopes: np.ndarray, spring: float) -> _Memory:
-    """The place of a slider, which with the displacement says the force of its spring."""
-    columns = len(seen)
-    following = slopes[:, columns:, :columns] @ seen
-    return _Memory(
-        seen.T @ slopes[:, :columns, 2 * columns :], following, slopes[:, columns:, 2 * columns :],
-        np.broadcast_to(-spring * seen[: following.shape[1]].T, (len(slopes), seen.shape[1], following.shape[1])),
-        np.zeros_like(following),
-    )  # fmt: skip
-
-
-def _remembered(seen: np.ndarray, slopes: np.ndarray) -> _Memory:
-    """States of a law and its forces, from which the next step begins; no states that nothing changes."""
-    columns = len(seen)
-    unmoved = np.eye(slopes.shape[1] - columns, slopes.shape[2], k=2 * columns)
-    moving = columns + np.flatnonzero(np.any(slopes[:, columns:] != unmoved, axis=(0, 2)))
-    kept = np.concatenate([np.arange(columns), moving])
-    slopes = slopes[:, kept][:, :, np.concatenate([np.arange(2 * columns), columns + moving])]
-    states = len(moving)
-    keeping = np.zeros((len(slopes), states + columns, states + columns))
-    after = np.roll(slopes, -columns, axis=1)  # states, then forces
-    keeping[:, :, :states] = after[:, :, 2 * columns :]
-    unit = np.concatenate([np.zeros((states, columns)), np.eye(columns)])
-    memory = np.zeros((len(slopes), seen.shape[1], states + columns))
-    memory[:, :, :states] = seen.T @ slopes[:, :columns, 2 * columns :]
-    return _Memory(
-        memory,
-        after[:, :, :columns] @ seen, keeping,
-        np.broadcast_to((unit @ seen).T, (len(slopes), seen.shape[1], len(unit))),
-        after[:, :, columns : 2 * columns] @ seen,
-    )  # fmt: skip

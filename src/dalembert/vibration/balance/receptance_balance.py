@@ -33,13 +33,15 @@ ACTIVE = 1e-11
 class ReceptanceBalance:
     """The elements of a system and a series, ready to be balanced by receptances; contacts are elastic ones.
 
-    ``reference`` (rows,): stiffness of each row while its contact sticks; ``events``: as `Balance` takes it.
+    ``reference`` (rows,): stiffness of each row while its contact sticks; ``events``: as `Balance` takes it; ``bare``:
+    rows with a reference on which no element acts.
     """
 
     lowered: Lowered
     series: Fourier
     reference: np.ndarray
     events: bool = True
+    bare: tuple[int, ...] = ()
 
     @cached_property
     def elements(self) -> Elements:
@@ -113,6 +115,9 @@ class ReceptanceBalance:
         moving = self._moving(unknowns, deviation, states)
         slopes = self.elements.slopes(omega, unknowns, moving)
         cells = [self._beyond(rows, local, self.reference[rows]) for rows, local in slopes.laws]
+        if self.bare:
+            rows, size = np.array(self.bare)[:, None], self.series.count
+            cells.append(self._beyond(rows, np.zeros((len(rows), size, size)), self.reference[rows]))
         for block, which, (rows, local) in zip(self.lowered.blocks, moving, slopes.contacts, strict=True):
             if which.any():
                 # Cells of an Iwan contact have parts of the reference of their rows.

@@ -9,6 +9,7 @@ each element alone, with its own compliance.
 """
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -124,6 +125,54 @@ class ReceptanceTangent:
             result[rows, :, column] = active
         return result
 
+    def bordered(
+        self, columns: np.ndarray, across: np.ndarray, corner: np.ndarray, top: np.ndarray, bottom: np.ndarray,
+        tolerance: float = EXACT,
+    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+        """Solve J x + S z = r, C x + D z = b, which is regular where J is not: x (rows, coefficients) and z (k,).
+
+        ``columns`` (rows, coefficients, k): S; ``across`` (k, rows, coefficients): C; ``corner`` (k, k): D; ``top``,
+        ``bottom``: r and b. LinAlgError where it is singular.
+        """
+        # x = r - S z - G f with the forces f = m x_a of the active rows: a system for x_a and z.
+        rows, size = self._rows, self.slope.shape[1]
+        count, borders = len(rows) * size, len(bottom)
+        reached = np.stack([self.point.respond_transposed(row)[rows].ravel() for row in across])
+        flat = across.reshape(borders, -1)
+        inner = corner - flat @ columns.reshape(-1, borders)
+        right = np.append(top[rows].ravel(), bottom - flat @ top.ravel())
+        beside = columns[rows].reshape(count, borders)
+        if count <= DIRECT or (failed := self._bordered_iterated(beside, reached, inner, right, tolerance)) is None:
+            if count > SIGNED:
+                raise np.linalg.LinAlgError("GMRES does not converge")
+            below = -np.stack([self._times(row.reshape(-1, size), transposed=True).ravel() for row in reached])
+            solution = np.linalg.solve(np.block([[self._matrix, beside], [below, inner]]), right)
+        else:
+            solution = failed
+        active, scalars = solution[:count].reshape(-1, size), solution[count:]
+        result = top - columns @ scalars - self.point.respond(self._times(active), rows)
+        result[rows] = active
+        return result, scalars
+
+    def _bordered_iterated(
+        self, beside: np.ndarray, reached: np.ndarray, inner: np.ndarray, right: np.ndarray, tolerance: float
+    ) -> np.ndarray | None:
+        """The solution for the active rows and z by GMRES; None where it does not converge."""
+        count, shape = len(beside), (len(self._rows), self.slope.shape[1])
+        product = self._product(tolerance >= SINGLE)
+
+        def bordered(values: np.ndarray) -> np.ndarray:
+            active = self._preconditioned(values[:count].reshape(shape))
+            moved, force = product(active)
+            scalars = values[count:]
+            return np.append(moved.ravel() + beside @ scalars, inner @ scalars - reached @ force.ravel())
+
+        operator = LinearOperator((len(right), len(right)), matvec=bordered, dtype=float)  # type: ignore[call-arg]
+        solution, failed = gmres(operator, right, rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES)
+        if failed and np.linalg.norm(operator @ solution - right) > NEAR * np.linalg.norm(right):
+            return None
+        return np.append(self._preconditioned(solution[:count].reshape(shape)).ravel(), solution[count:])
+
     def beyond(self, change: np.ndarray) -> np.ndarray:
         """m times a change of the displacements of all rows (rows, coefficients): of forces beyond the reference."""
         result = np.zeros_like(change)
@@ -145,15 +194,18 @@ class ReceptanceTangent:
     def _is_small(self) -> bool:
         return len(self._rows) * self.slope.shape[1] <= DIRECT
 
-    def _times(self, values: np.ndarray, supported: bool = True) -> np.ndarray:
-        """m times values of the active rows (active, coefficients), with the support of what nothing resists."""
+    def _times(self, values: np.ndarray, supported: bool = True, transposed: bool = False) -> np.ndarray:
+        """m, or its transpose, times values of the active rows (active, coefficients), with the support of what nothing
+        resists.
+        """
         result = np.zeros_like(values)
         if supported and self._support is not None:
             # φ k φᵀ of the mean, k as stiff as the contacts. It does not act where the forces are in balance.
             result[:, 0] = self._support @ (self._stiffness * (self._support.T @ values[:, 0]))
         for places, cells in zip(self._places, self.cells, strict=True):
             count, size, _ = cells.blocks.shape
-            product = (cells.blocks @ values[places].reshape(count, size, 1)).reshape(*places.shape, -1)
+            blocks = np.swapaxes(cells.blocks, 1, 2) if transposed else cells.blocks
+            product = (blocks @ values[places].reshape(count, size, 1)).reshape(*places.shape, -1)
             if cells.share:
                 np.add.at(result, places, product)
             else:
@@ -176,6 +228,16 @@ class ReceptanceTangent:
     @cached_property
     def _factors(self) -> Any:
         """Factors of 1 + G m among the active rows."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LinAlgWarning)
+            factors = lu_factor(self._matrix, check_finite=False, overwrite_a=True)
+        if not np.all(np.abs(np.diag(factors[0])) > 0):
+            raise np.linalg.LinAlgError("the Jacobian is singular")
+        return factors
+
+    @property
+    def _matrix(self) -> np.ndarray:
+        """1 + G m among the active rows, (unknowns, unknowns)."""
         # 1 + G_aa m, element by element: m is block-diagonal, G_aa full among rows and diagonal among harmonics.
         size = self.slope.shape[1]
         count = len(self._rows) * size
@@ -191,33 +253,35 @@ class ReceptanceTangent:
             support = self._stiffness * self._support @ self._support.T
             of = matrix.reshape(count, len(self._rows), size)
             of[:, :, 0] += response[:, :, 0] @ support
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LinAlgWarning)
-            factors = lu_factor(matrix, check_finite=False, overwrite_a=True)
-        if not np.all(np.abs(np.diag(factors[0])) > 0):
-            raise np.linalg.LinAlgError("the Jacobian is singular")
-        return factors
+        return matrix
 
     def _iterated(self, right: np.ndarray, tolerance: float) -> np.ndarray:
         shape, size = right.shape, right.size
-        compliance = self._compliance(tolerance >= SINGLE)
-        shapes = self.point.stuck.row_shapes[self._rows]
-
-        def product(values: np.ndarray) -> np.ndarray:
-            values = self._preconditioned(values.reshape(shape))
-            force = self._times(values)
-            # One product for all harmonics: G_0 is real. The gains of the modes are complex, but the modes are few.
-            static = (compliance @ force.astype(compliance.dtype)).astype(float)
-            return (values + static + shapes @ self.point.with_gains(shapes.T @ force)).ravel()
+        product = self._product(tolerance >= SINGLE)
 
         # Preconditioned from the right: the residual that GMRES judges is that of the system.
-        operator = LinearOperator((size, size), matvec=product, dtype=float)  # type: ignore[call-arg]
+        def preconditioned(values: np.ndarray) -> np.ndarray:
+            return product(self._preconditioned(values.reshape(shape)))[0].ravel()
+
+        operator = LinearOperator((size, size), matvec=preconditioned, dtype=float)  # type: ignore[call-arg]
         solution, failed = gmres(operator, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=CYCLES)
         if failed and size <= SIGNED:
             return self._direct(right)
         if failed and np.linalg.norm(operator @ solution - right.ravel()) > NEAR * np.linalg.norm(right):
             raise np.linalg.LinAlgError("GMRES does not converge")
         return self._preconditioned(solution.reshape(shape))
+
+    def _product(self, single: bool) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        """1 + G m and m times values of the active rows, (active, coefficients), as a function of these."""
+        compliance, shapes = self._compliance(single), self.point.stuck.row_shapes[self._rows]
+
+        def product(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            force = self._times(values)
+            # One product for all harmonics: G_0 is real. The gains of the modes are complex, but the modes are few.
+            static = (compliance @ force.astype(compliance.dtype)).astype(float)
+            return values + static + shapes @ self.point.with_gains(shapes.T @ force), force
+
+        return product
 
     def _compliance(self, single: bool) -> np.ndarray:
         key = "single" if single else "double"

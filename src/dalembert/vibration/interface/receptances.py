@@ -71,6 +71,22 @@ class ReceptancePoint:
         """The derivative of G by ω times forces (rows, coefficients)."""
         return self._modal(self.gain_slopes, forces, None)
 
+    def respond_growth(self, forces: np.ndarray) -> np.ndarray:
+        """The derivative of G by the negative damping ξ times forces (rows, coefficients)."""
+        # q = 1 + Ẑ has the part -i s ξ μ: ∂(1/q)/∂ξ = (1/q) i s μ (1/q), and 1/q is one more than the gains.
+        inertias, frequencies = self.stuck.inertias, 1j * self.frequencies[:, None]
+        if self.gains.ndim == 2:
+            return self._modal((1 + self.gains) ** 2 * frequencies * inertias, forces, None)
+        inverse = np.eye(len(inertias)) + self.gains
+        return self._modal(inverse * (frequencies * inertias)[:, None, :] @ inverse, forces, None)
+
+    def respond_transposed(self, forces: np.ndarray) -> np.ndarray:
+        """The transpose of G, as a real matrix of coefficients, times forces (rows, coefficients)."""
+        # A phasor matrix G = Gᵀ has the conjugate as its real transpose: conj(G) f = conj(G conj(f)).
+        turned = np.ones(self.series.count)
+        turned[self.series.mean + 1 :: 2] = -1.0
+        return turned * self.respond(turned * forces)
+
     def among(self, rows: np.ndarray) -> np.ndarray:
         """G at some rows, (orders, rows, rows)."""
         # G_0 + (B V) d (B V)ᵀ; d is diagonal where the damping couples no modes.
@@ -158,10 +174,10 @@ class Receptances:
     loads: Loads
     spin: Callable[[float], tuple[float, float]]
 
-    def at(self, omega: float) -> ReceptancePoint:
-        """The receptances at ω, rad/s."""
+    def at(self, omega: float, growth: float = 0.0) -> ReceptancePoint:
+        """The receptances at ω, rad/s, with the damping C - ξ M. ``growth``: ξ, 1/s."""
         s = np.array(self.series.orders, dtype=float) * omega
-        gains, slopes, still = self._gains(s, self.spin(omega))
+        gains, slopes, still = self._gains(s, self.spin(omega), growth)
         weights, weight_slopes = self.loads.weights(omega)
         (static, modal), (static_slope, modal_slope) = (
             [np.tensordot(factors, parts, 1) for parts in self._loaded] for factors in (weights, weight_slopes)
@@ -199,11 +215,15 @@ class Receptances:
             result[:, pushed] = self.stuck.rows @ self.stuck.solve(loads[:, pushed])
         return static, patterns @ self.stuck.shapes
 
-    def _gains(self, s: np.ndarray, spin: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _gains(
+        self, s: np.ndarray, spin: tuple[float, float], growth: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """1/q - 1 with q = 1 + Ẑ, its derivative by ω, and whether a mode has q = 0."""
         stuck, orders = self.stuck, np.array(self.series.orders, dtype=float)
         full = any(part.ndim == 2 for part in stuck.damping.values())
         matrices = {"mass": np.diag(stuck.inertias) if full else stuck.inertias, **stuck.damping}
+        if growth:
+            matrices["damping"] = matrices.get("damping", 0.0) - growth * matrices["mass"]
         s, orders = (values.reshape(-1, *[1] * (1 + full)) for values in (s, orders))
         # q - 1, which is small for fast modes: 1/q - 1 = -(q - 1)/q has no cancellation.
         beyond = combined(factors(matrices, s, spin[0]), matrices)

@@ -84,7 +84,7 @@ def stuck_structure(
     rad/s; ``before``: the same with fewer modes, if it is known. SolveError if a part moves without being held, or if
     the highest frequency lies among too many modes.
     """
-    stiffness, mass = _stiffened(structure, rows, reference), real_part(structure.mass)
+    stiffness, mass = stiffened(structure, rows, reference), real_part(structure.mass)
     solve = held(structure, rows, reference) if before is None else before.solve
     modes = stuck_modes(structure, stiffness, mass, solve, highest)
     # The rows in motions that the structure does not resist, orthonormal; without those that move none.
@@ -98,7 +98,7 @@ def stuck_structure(
 
 def held(structure: Structure, rows: csc_array, reference: np.ndarray) -> Solve:
     """Return K_r⁻¹ as a function of columns. SolveError if a part moves without being held, or K_r is not positive."""
-    return factorise(_stiffened(structure, rows, reference), WHAT, positive=True)
+    return factorise(stiffened(structure, rows, reference), WHAT, positive=True)
 
 
 def _compliance(rows: Any, solve: Solve) -> np.ndarray:
@@ -112,7 +112,8 @@ def _compliance(rows: Any, solve: Solve) -> np.ndarray:
     return result
 
 
-def _stiffened(structure: Structure, rows: csc_array, reference: np.ndarray) -> Any:
+def stiffened(structure: Structure, rows: csc_array, reference: np.ndarray) -> Any:
+    """Return K_r, (n, n)."""
     added = rows.T @ diags_array(reference) @ rows
     stiffness = real_part(structure.stiffness)
     return csc_array(stiffness + added) if issparse(stiffness) else stiffness + added.toarray()

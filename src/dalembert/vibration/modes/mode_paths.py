@@ -7,7 +7,8 @@ from itertools import islice
 import numpy as np
 
 from dalembert.vibration.balance.arc_length import EASY, MOST_POINTS, SHORTEST, STEADY, Progress
-from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations, ModePlane
+from dalembert.vibration.modes.free_motion import FreeMotion, Linear, ModePlane
+from dalembert.vibration.modes.mode_equations import ModeEquations
 from dalembert.vibration.paths.continuation import MOST_AROUND
 
 SMALLER = (1.0, 0.1, 1e-2, 1e-3, 1e-4)
@@ -63,8 +64,8 @@ def same_mode(mode: ModeEquations, known: FreeMotion, candidate: FreeMotion) -> 
     """Whether a motion is converged, and belongs to the same mode."""
     if not candidate.converged:
         return False
-    matrix, mean = mode.system(candidate.samples).matrices[1], int(mode.problem.method.orders[0] == 0)
-    first, other = (motion.harmonics[:, mean : mean + 2] for motion in (known, candidate))
+    matrix, mean = mode.mass, mode.series().mean
+    first, other = (mode.displacements(motion)[:, mean : mean + 2] for motion in (known, candidate))
     # MAC of first harmonics, weighted by the mass: 1 for the same shape, 0 for another linear mode.
     inner = [float(np.sum(left * (matrix @ right))) for left, right in ((first, other), (first, first), (other, other))]
     return inner[0] > SAME * np.sqrt(inner[1] * inner[2])

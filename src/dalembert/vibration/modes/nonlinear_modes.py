@@ -10,7 +10,7 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.threads import single_thread
 from dalembert.units import unit_of
-from dalembert.vibration.balance.equations import by_stiffness, equations
+from dalembert.vibration.balance.equations import chosen_solver, equations, require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.truncation import (
     SLOW,
@@ -21,8 +21,11 @@ from dalembert.vibration.balance.truncation import (
     hardest,
 )
 from dalembert.vibration.fourier import in_orders
+from dalembert.vibration.interface.contacts_stuck import ContactsStuck
+from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.modes.backbone_result import Backbone
-from dalembert.vibration.modes.mode_equations import FreeMotion, Linear, ModeEquations
+from dalembert.vibration.modes.free_motion import FreeMotion, Linear
+from dalembert.vibration.modes.mode_equations import ModeEquations
 from dalembert.vibration.modes.mode_paths import (
     first_motion,
     from_linear_mode,
@@ -31,6 +34,8 @@ from dalembert.vibration.modes.mode_paths import (
     motions_at,
     same_mode,
 )
+from dalembert.vibration.modes.receptance_modes import ReceptanceModes
+from dalembert.vibration.modes.uncondensed_modes import UncondensedModes
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.storage import versions
 from dalembert.vibration.system.harmonic_force import StaticForce
@@ -107,7 +112,9 @@ def backbone(
     ([1.342, 1.028, 1.0], [0.0, 0.053, 0.001])
     """
     require_still(system, "backbone")
-    method = by_stiffness(method or HarmonicBalance(), "backbone")
+    method = method or HarmonicBalance()
+    require_one_period(method, "backbone")
+    method = replace(method, solver=chosen_solver(lower(system), method))
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     posed = _PosedBackbone(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)
     nonlinear_mode, motions = _follow(posed, method.first())
@@ -156,7 +163,7 @@ class FreeLevel:
 
     def padded(self, motion: FreeMotion, method: HarmonicBalance) -> "tuple[FreeLevel, FreeMotion]":
         """Return the equations with the harmonics of another method, and the motion solved with them."""
-        finer = replace(self.equations, problem=replace(self.equations.problem, method=method, _balances={}))
+        finer = self.equations.with_method(method)
         guess = replace(motion, harmonics=in_orders(motion.harmonics, self.method.orders, method.orders))
         moved = finer.at_size(guess, motion.size, max(method.first_samples, motion.samples))
         return FreeLevel(finer), moved if same_mode(finer, guess, moved) else replace(moved, converged=False)
@@ -178,11 +185,17 @@ def _follow(posed: _PosedBackbone, method: HarmonicBalance) -> tuple[ModeEquatio
     """Follow the mode with a number of harmonics: its equations and motions."""
     driven = equations(posed.system, method, posed.checkpoint, residuals=False)
     static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
-    free = replace(driven, lowered=replace(driven.lowered, forces=static), _balances={})
-    linear = ModeEquations(free, -1).linear(posed.mode)
+    lowered = replace(driven.lowered, forces=static)
+    free = replace(driven, lowered=lowered, _balances={}, _stuck=ContactsStuck(lowered))
+    kind = ReceptanceModes if free.by_receptances else UncondensedModes
+    linear = kind(free, -1, posed.mode).linear()
     names = free.lowered.structure.dofs
     row = int(np.abs(linear.shape).argmax()) if posed.dof is None else names.index(posed.dof)
-    mode, start = ModeEquations(free, row), _scaled(linear, row, names.names[row])
+    if free.by_receptances:
+        lowered = lowered.measuring(row)
+        free = replace(free, lowered=lowered, _balances={}, _stuck=ContactsStuck(lowered))
+    mode = kind(free, row, posed.mode)
+    start = _scaled(mode.linear(), row, names.names[row])
     first = first_motion(mode, start, float(posed.sizes[0]))
     if not posed.is_path:
         return mode, list(motions_at(mode, first, posed.sizes, start.rest))
@@ -206,7 +219,7 @@ def _conclude(posed: _PosedBackbone, mode: ModeEquations, motions: list[FreeMoti
     omegas, growths, sizes, iterations, residuals, converged, samples = (
         np.array([getattr(motion, part.name) for motion in motions]) for part in fields(FreeMotion)[1:]
     )
-    shapes = np.stack([mode.basis @ motion.harmonics for motion in motions])
+    shapes = np.stack([mode.displacements(motion) for motion in motions])
     dof, ends = names[mode.row], (float(posed.sizes[0]), float(posed.sizes[-1]))
     what = f"amplitude of {dof}", unit_of(dof)
     # ζ = ξ/(2 ω); the force F = 2 ζ ω²/A Σ h² X_hᵀ M X_h does the work that the negative damping does.
@@ -232,9 +245,9 @@ def _conclude(posed: _PosedBackbone, mode: ModeEquations, motions: list[FreeMoti
 
 def _energy_and_work(mode: ModeEquations, motion: FreeMotion) -> tuple[float, float]:
     """Largest kinetic energy, J, and ω Σ h² X_h^T M X_h, whose product with ξ π is what a period loses."""
-    system = mode.system(motion.samples)
-    velocity = motion.omega * motion.harmonics @ system.series.derivative.T
-    mass, samples = system.matrices[1], velocity @ system.series.synthesis.T
+    series = mode.series(motion.samples)
+    velocity = motion.omega * mode.displacements(motion) @ series.derivative.T
+    mass, samples = mode.mass, velocity @ series.synthesis.T
     # T = v^T M v/2 at the samples; its largest value is the energy of a conservative mode at an instant of rest
     # position.
     kinetic = 0.5 * np.einsum("it,it->t", samples, mass @ samples)

@@ -23,7 +23,12 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
             f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
         )
     unknowns, samples, orders = curve.unknowns[point], int(curve.samples[point]), problem.method.orders
-    unknowns = _in_unknowns_of(problem, curve, unknowns)
+    if "control" in curve.provenance:
+        # Its unknowns have a row more than those of other equations.
+        rows = curve.displacements[point]
+        unknowns = rows if problem.by_receptances else rows[problem.lowered.coordinates.rows]
+    else:
+        unknowns = _in_unknowns_of(problem, curve, unknowns)
     if set(curve.orders) < set(orders):
         unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
     if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):

@@ -42,11 +42,14 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
 
 def measured_again(problem: Equations, before: Equations, solution: Solution) -> Solution:
     """Return a solution of a system in the unknowns of equations that measure one of its degrees of freedom."""
+    if not problem.lowered.added:
+        return solution
     # Rows that elements see, then the one that was added.
-    rows = before.balance(solution.samples).displacements(solution.unknowns)
-    if problem.lowered.added:
-        dof = problem.lowered.matrix[[-1]].nonzero()[1]
-        rows = np.vstack([rows, response_of(before, solution, dof)])
+    rows, dof = (
+        before.balance(solution.samples).displacements(solution.unknowns),
+        problem.lowered.matrix[[-1]].nonzero()[1],
+    )
+    rows = np.vstack([rows, response_of(before, solution, dof)])
     unknowns = rows if problem.by_receptances else rows[problem.lowered.coordinates.rows]
     return problem.solve(unknowns, solution.omega, solution.samples)
 

@@ -1,5 +1,6 @@
 """Nonlinear modes: how they are kept, followed and refused; against numbers in tests/verification."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,35 @@ import pytest
 from dalembert.errors import InputError, SolveError
 from dalembert.forward import Checkpoint
 from dalembert.structure import lumped
-from dalembert.vibration import Backbone, FrictionContact, Gap, HarmonicBalance, StaticForce, VibrationSystem, backbone
+from dalembert.vibration import (
+    Backbone,
+    ElasticSlider,
+    FrictionContact,
+    Gap,
+    HarmonicBalance,
+    StaticForce,
+    VibrationSystem,
+    backbone,
+)
 from dalembert.vibration.modes.mode_equations import ModeEquations
 from support import says
 from vibrating_systems import chain, duffing, two_masses
 
 METHOD = HarmonicBalance(5)
+
+
+def pressed_pair() -> VibrationSystem:
+    """Two masses with two directions each, the first one pressed on the ground, with friction and a varying load."""
+    names = [f"{node}.{axis}" for node in "ab" for axis in "xz"]
+    springs = [(f"a.{axis}", None, 1.0, 0.02) for axis in "xz"] + [
+        (f"a.{axis}", f"b.{axis}", 1.0, 0.02) for axis in "xz"
+    ]
+    springs += [("a.x", "b.z", 0.3, 0.0)]
+    system = VibrationSystem(lumped(dict.fromkeys(names, 1.0), springs))
+    system.add(StaticForce("a.z", 2.0))
+    law = ElasticSlider(1.5, normal_stiffness=2.0)
+    system.add(FrictionContact("foot", "a", normal="z", friction=0.5, law=law))
+    return system
 
 
 def test_a_backbone_is_kept_to_the_bit(tmp_path: Path) -> None:
@@ -44,6 +68,35 @@ def test_a_mode_swings_about_the_position_that_static_forces_give() -> None:
     system.add(StaticForce("m", 8.0))
     found = backbone(system, np.array([0.5, 1.5]), method=METHOD)
     np.testing.assert_allclose(2 * np.pi * found.frequencies, 2.0, rtol=1e-12)
+    np.testing.assert_allclose(found.shapes[:, 0, 0], 2.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("direct", [120, 0], ids=["dense", "iterated"])
+@pytest.mark.parametrize("posed", [two_masses, chain, pressed_pair])
+def test_a_mode_by_receptances_is_that_by_dynamic_stiffnesses(posed, direct: int, monkeypatch) -> None:
+    monkeypatch.setattr("dalembert.vibration.balance.receptance_tangent.DIRECT", direct)
+    paths = [
+        backbone(posed(), (0.1, 2.0), 2, HarmonicBalance(5, samples=256, solver=solver))
+        for solver in ("stiffness", "receptance")
+    ]
+    assert all(path.converged.all() for path in paths)
+    given = np.geomspace(0.12, 1.9, 4)
+    for name in ("frequencies", "damping", "energies"):
+        first, other = (np.interp(given, path.amplitudes, getattr(path, name)) for path in paths)
+        np.testing.assert_allclose(first, other, rtol=5e-3)  # between points of both paths
+    ends = [np.array([path.frequencies[-1], path.damping[-1], path.energies[-1]]) for path in paths]
+    np.testing.assert_allclose(ends[0], ends[1], rtol=1e-8)
+    np.testing.assert_allclose(paths[0].shapes[-1], paths[1].shapes[-1], rtol=0, atol=1e-8)
+
+
+def test_a_mode_about_a_stop_that_a_static_force_closes_by_receptances() -> None:
+    """The linear mode has the stiffness of the stop, though this is not among the contacts that stick."""
+    system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.02)]))
+    system.add(Gap("stop", "m", stiffness=3.0))
+    system.add(StaticForce("m", 8.0))
+    found = backbone(system, np.array([0.5, 1.5]), method=replace(METHOD, solver="receptance"))
+    np.testing.assert_allclose(2 * np.pi * found.frequencies, 2.0, rtol=1e-12)
+    np.testing.assert_allclose(found.damping, 0.005, rtol=1e-9)
     np.testing.assert_allclose(found.shapes[:, 0, 0], 2.0, rtol=1e-12)
 
 

@@ -1,5 +1,7 @@
 """Held amplitudes and phases, beside closed forms and curves of held forces."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -23,14 +25,15 @@ def pair(level: float = 1.0, friction: bool = False, static: float = 0.1) -> Vib
     return system
 
 
-@pytest.mark.parametrize("friction", [False, True])
-def test_a_held_amplitude_is_that_of_the_force_it_needs(friction):
-    frequencies = np.linspace(0.05, 0.35, 25)
-    curve = frequency_response(pair(friction=friction), frequencies, METHOD, control=HeldAmplitude("b", 0.4))
+@pytest.mark.parametrize(("friction", "solver"), [(False, "auto"), (True, "stiffness"), (True, "receptance")])
+def test_a_held_amplitude_is_that_of_the_force_it_needs(friction, solver):
+    frequencies, method = np.linspace(0.05, 0.35, 25), replace(METHOD, solver=solver)
+    curve = frequency_response(pair(friction=friction), frequencies, method, control=HeldAmplitude("b", 0.4))
     assert curve.converged.all()
     np.testing.assert_allclose(curve.amplitude("b", "harmonic 1"), 0.4, rtol=1e-9)
     assert curve.load_factors.min() > 0
     assert curve.provenance["control"] == {"dof": "b", "amplitude": 0.4}
+    assert curve.coordinates == (("k", "f.x") if friction else ("k",))
     for point in (0, 12, 24):
         # From its motion, the curve of the held force stays there.
         forced = pair(float(curve.load_factors[point]), friction)
@@ -100,9 +103,11 @@ def test_the_phase_resonance_of_one_harmonic_has_a_closed_form():
     assert track.provenance["phase"] == -np.pi / 2
 
 
-def test_another_phase_of_an_interior_degree_of_freedom():
+@pytest.mark.parametrize("solver", ["stiffness", "receptance"])
+def test_another_phase_of_an_interior_degree_of_freedom(solver):
+    method = replace(METHOD, solver=solver)
     track = track_resonance(
-        pair, "level", [0.04, 0.08], (0.05, 0.15), METHOD, dof="b", kind="harmonic 1", phase=-np.pi / 4
+        pair, "level", [0.04, 0.08], (0.05, 0.15), method, dof="b", kind="harmonic 1", phase=-np.pi / 4
     )
     assert track.converged.all()
     for level, frequency in zip(track.values, track.frequencies, strict=True):

@@ -17,6 +17,7 @@ from dalembert.vibration import (
     HarmonicBalance,
     HarmonicForce,
     StaticForce,
+    UserLaw,
     VibrationSystem,
     floquet_multipliers,
     frequency_response,
@@ -26,6 +27,82 @@ from support import says
 from vibrating_systems import duffing, one_mass, two_masses
 
 TURN = 2 * np.pi
+
+
+def drag(u, v, z, numbers, force):
+    """Force by the square of the velocity."""
+    force[0] = numbers[0] * v[0] * (v[0] if v[0].real > 0 else -v[0])
+
+
+def springs_and_slider(mass: float = 1.0) -> VibrationSystem:
+    """Three masses, the middle one with a slider and some mass; a cubic spring and a drag at the last."""
+    names = ("a", "b", "c")
+    places = [("a", None), ("a", "b"), ("b", "c")]
+    structure = lumped(dict.fromkeys(names, 1.0) | {"b": mass}, [(*ends, 1.0, 0.03) for ends in places])
+    system = VibrationSystem(structure)
+    system.add(HarmonicForce("c", 0.8))
+    system.add(FrictionContact("slider", "b", friction=0.4, preload=0.5, law=ElasticSlider(2.0)))
+    system.add(CubicSpring("cubic", "c", stiffness=0.4))
+    system.add(UserLaw("drag", "c", function=drag, values=[0.05]))
+    return system
+
+
+def plate_on_the_ground() -> VibrationSystem:
+    """Two pressed contacts with friction in two directions, at which a motion is unstable."""
+    axes = "xyz"
+    masses = {f"{node}.{axis}": 1.0 for node in "abc" for axis in axes}
+    springs = [
+        (f"{node}.{axis}", end if end is None else f"{end}.{axis}", 1.0 + 0.1 * place + 0.2 * row, 0.03)
+        for place, (node, end) in enumerate((("a", None), ("b", "a"), ("c", "b")))
+        for row, axis in enumerate(axes)
+    ]
+    system = VibrationSystem(lumped(masses, springs))
+    for axis, force in zip(axes, (0.6, 0.3, 0.3), strict=True):
+        system.add(HarmonicForce(f"c.{axis}", force))
+    law = ElasticSlider(2.0, normal_stiffness=3.0)
+    for node in "ab":
+        sides = {"tangential": ("x", "y"), "normal": "z"}
+        system.add(FrictionContact(f"at {node}", node, **sides, friction=0.4, preload=0.5, law=law))
+    return system
+
+
+@pytest.mark.parametrize(
+    ("posed", "unstable", "error"),
+    [
+        (springs_and_slider, 0, 1e-7),
+        # Without mass both take backward differences, of different coordinates: an error of the steps.
+        (lambda: springs_and_slider(0.0), 0, 1e-4),
+        (plate_on_the_ground, 1, 1e-7),
+    ],
+)
+def test_multipliers_by_receptances_are_those_by_dynamic_stiffnesses(posed, unstable: int, error: float) -> None:
+    system, frequencies = posed(), np.array([0.13, 0.2, 0.3])
+    stiff, modal = (
+        frequency_response(
+            system, frequencies, HarmonicBalance(5, samples=512, solver=solver), stability=True, check=False
+        )
+        for solver in ("stiffness", "receptance")
+    )
+    np.testing.assert_array_equal(stiff.stable, modal.stable)
+    assert np.sum(stiff.stable == 0) == unstable
+    for point in range(3):
+        first, other = (floquet_multipliers(system, curve, point) for curve in (stiff, modal))
+        np.testing.assert_allclose(np.abs(first[:6]), np.abs(other[:6]), rtol=error)
+
+
+def test_motions_of_too_many_contacts_have_no_label(monkeypatch) -> None:
+    monkeypatch.setattr("dalembert.vibration.stability.stability.MOST_ROWS", 1)
+    monkeypatch.setattr("dalembert.vibration.stability.bifurcations.MOST_ROWS", 1)
+    method = HarmonicBalance(5, solver="receptance")
+    curve = frequency_response(springs_and_slider(), np.array([0.13, 0.2]), method, stability=True, check=False)
+    assert curve.stable.tolist() == [-1, -1]
+    finding = next(finding for finding in curve.findings if finding.code == "stability-many-contacts")
+    assert finding.message == (
+        "The stability of 2 points between 0.13 and 0.2 Hz is not known: more than 1 displacements of contacts slip or "
+        "open there."
+    )
+
+
 METHOD = HarmonicBalance(5)
 
 

@@ -87,8 +87,6 @@ def test_a_linear_system_answers_as_its_matrices_do(speed, sparse, monkeypatch):
 @pytest.mark.parametrize("speed", [3.0, "synchronous"])
 def test_slopes_by_the_frequency_are_those_of_differences(speed, solver):
     structure, parts = rotor(), list(EVERY)
-    if solver == "receptance":  # which takes no rotor
-        structure, speed = replace(structure, gyroscopic=None, circulatory=None), 0.0
     if speed == 3.0:
         parts = [part for part in parts if not isinstance(part, da.Unbalance)]
     system = loaded(structure, *parts, da.CubicSpring("c", "n4.x", stiffness=30.0), speed=speed)
@@ -104,7 +102,22 @@ def test_slopes_by_the_frequency_are_those_of_differences(speed, solver):
     assert np.abs(slope - differences).max() < 1e-7 * np.abs(differences).max()
 
 
-def test_derivatives_by_the_parameters_of_a_rotor_and_its_forces():
+@pytest.mark.parametrize("speed", [3.0, "synchronous"])
+def test_a_rotor_by_receptances_moves_as_by_dynamic_stiffnesses(speed):
+    slider = da.FrictionContact("c", "n1", friction=0.4, preload=0.5, law=da.ElasticSlider(2.0))
+    system = loaded(rotor(), da.HarmonicForce("n0.x", 1.0), slider, speed=speed)
+    curves = [
+        frequency_response(system, np.array([0.2, 0.4, 0.7, 1.1]), replace(METHOD, solver=solver), stability=True)
+        for solver in ("stiffness", "receptance")
+    ]
+    assert all(curve.converged.all() for curve in curves)
+    np.testing.assert_allclose(curves[0].response, curves[1].response, rtol=0, atol=1e-9)
+    first, other = (da.floquet_multipliers(system, curve, 1) for curve in curves)
+    np.testing.assert_allclose(np.abs(first[:4]), np.abs(other[:4]), rtol=1e-6)
+
+
+@pytest.mark.parametrize("solver", ["stiffness", "receptance"])
+def test_derivatives_by_the_parameters_of_a_rotor_and_its_forces(solver):
     def build(moment: float, base: float, scale: float, speed: float, inner: float, polar: float) -> VibrationSystem:
         from dalembert.structure import Disc, RotatingDamper, with_rotors
 
@@ -123,7 +136,9 @@ def test_derivatives_by_the_parameters_of_a_rotor_and_its_forces():
         "moment": (1.0, 3.0), "base": (0.01, 0.03), "scale": (0.5, 1.5),
         "speed": (2.0, 8.0), "inner": (0.05, 0.2), "polar": (0.2, 0.8),
     }  # fmt: skip
-    model = da.FrequencyResponse(build, bounds, ["d.x rms", "d.ry rms"], np.array([0.8, 1.3]), METHOD)
+    model = da.FrequencyResponse(
+        build, bounds, ["d.x rms", "d.ry rms"], np.array([0.8, 1.3]), replace(METHOD, solver=solver)
+    )
     vector = np.array([2.0, 0.02, 1.0, 5.0, 0.1, 0.4])
     _, jacobian = model.linearise(vector)
     for column, name in enumerate(bounds):
@@ -176,13 +191,6 @@ def test_a_rotor_that_turns_is_refused_where_it_has_no_meaning():
         ),
     ):
         da.backbone(system, np.array([1.0]))
-    with pytest.raises(
-        InputError,
-        match=says(
-            "HarmonicBalance: solver is 'receptance', but the structure has a rotor, which needs dynamic stiffnesses. Use solver='stiffness'"
-        ),
-    ):
-        frequency_response(system, np.array([1.0]), HarmonicBalance(3, solver="receptance"))
     with pytest.raises(
         da.ModelError,
         match=says(

@@ -307,15 +307,17 @@ LARGE = 500
 """Unknowns of elastic contacts above which a system is solved by receptances."""
 
 
-def chosen_solver(lowered: Lowered, method: HarmonicBalance) -> str:
-    """Return the way in which the structure is written for a curve.
+def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool = False) -> str:
+    """Return the way in which the structure is written for a curve. ``stability``: whether that of motions, or free
+    motions, are asked for.
 
     InputError where receptances are asked for and rigid contacts need dynamic stiffnesses.
     """
     causes = [
         f"the contact {lowered.contacts[block.contacts[0]]!r} is rigid"
+        + (" and predicts velocities" if not stability else "")
         for block in lowered.blocks
-        if block.kind != ELASTIC
+        if not block.memory or (stability and block.kind != ELASTIC)
     ]
     if method.solver == RECEPTANCE and causes:
         raise InputError(

@@ -4,9 +4,12 @@ With the receptance G of the structure whose contacts stick, with stiffnesses r,
 
 .. math:: R(u, \omega) = u - u_\mathrm{lin}(\omega) + G(\omega)\,[\lambda(u) - r u] = 0,
 
-where :math:`u_\mathrm{lin}` are those by the loads while all contacts stick. A contact that does what its reference
-says has :math:`\lambda - r u` constant: it adds no column to the Jacobian
+where :math:`u_\mathrm{lin}` are those by the loads while all contacts stick. An elastic contact that does what its
+reference says has :math:`\lambda - r u` constant: it adds no column to the Jacobian
 :math:`1 + G\,(\partial\lambda/\partial u - r)`. The solution does not depend on r.
+
+The unknowns of a rigid contact with the penalty ε are the displacements that its law predicts,
+:math:`w = u + \lambda/\epsilon` with :math:`\lambda = \lambda(w)`, so that :math:`u = w - \lambda(w)/\epsilon`.
 """
 
 from dataclasses import dataclass, replace
@@ -19,7 +22,7 @@ from dalembert.vibration.balance.receptance_tangent import ActiveCells, Receptan
 from dalembert.vibration.balance.row_elements import Elements
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensed_structure import norm
-from dalembert.vibration.interface.lowering import FrictionBlock, Lowered, penalties
+from dalembert.vibration.interface.lowering import ELASTIC, FrictionBlock, Lowered, penalties
 from dalembert.vibration.interface.receptances import ReceptancePoint
 from dalembert.vibration.laws.friction_law import SEPARATED, STUCK
 
@@ -31,7 +34,7 @@ ACTIVE = 1e-11
 
 @dataclass(frozen=True)
 class ReceptanceBalance:
-    """The elements of a system and a series, ready to be balanced by receptances; contacts are elastic ones.
+    """The elements of a system and a series, ready to be balanced by receptances. Rigid contacts predict displacements.
 
     ``reference`` (rows,): stiffness of each row while its contact sticks; ``events``: as `Balance` takes it; ``bare``:
     rows with a reference on which no element acts.
@@ -54,12 +57,27 @@ class ReceptanceBalance:
         return len(self.reference), self.series.count
 
     def displacements(self, unknowns: np.ndarray) -> np.ndarray:
-        """Of all rows that elements see, (rows, coefficients): the unknowns themselves."""
-        return unknowns
+        """Of all rows that elements see, (rows, coefficients): the unknowns themselves, but for rigid contacts."""
+        if not self._flexibility.any():
+            return unknowns
+        return unknowns - self._flexibility[:, None] * self.elements.forces(0.0, unknowns)[0]
+
+    def unknowns(self, displacements: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Unknowns where rows have displacements and forces of their elements, (rows, coefficients) each."""
+        return displacements + self._flexibility[:, None] * forces
+
+    @cached_property
+    def _flexibility(self) -> np.ndarray:
+        """1/ε of the rows of rigid contacts, 0 of others, (rows,)."""
+        rigid = [block for block in self.lowered.blocks if block.kind != ELASTIC]
+        result = np.zeros(len(self.reference), np.result_type(float, *(block.numbers for block in rigid)))
+        for block in rigid:
+            result[block.rows] = 1 / penalties(block)
+        return result
 
     def stuck(self, point: ReceptancePoint) -> np.ndarray:
-        """Unknowns where all elements do what their reference says."""
-        return point.linear
+        """Unknowns where all elements do what their reference says, with the penalty as a spring of rigid contacts."""
+        return point.linear * (1 + self._flexibility * self.reference)[:, None]
 
     def without_contacts(self, point: ReceptancePoint) -> np.ndarray:
         """Unknowns where no element acts: (1 - G r) u = u_lin. LinAlgError where elements alone hold a part."""
@@ -84,7 +102,8 @@ class ReceptanceBalance:
 
     def deviation(self, omega: float, unknowns: np.ndarray) -> np.ndarray:
         """Forces of the elements beyond those of their reference, λ - r u, (rows, coefficients)."""
-        return self.elements.forces(omega, unknowns)[0] - self.reference[:, None] * unknowns
+        forces = self.elements.forces(omega, unknowns)[0]
+        return forces - self.reference[:, None] * (unknowns - self._flexibility[:, None] * forces)
 
     def active(self, point: ReceptancePoint, unknowns: np.ndarray) -> Lowered:
         """The system without the contacts that do what their reference says at a point."""
@@ -101,9 +120,10 @@ class ReceptanceBalance:
         # Displacements by the loads and by what contacts do beyond their reference are in balance: the residual is one
         # of displacements, and needs no stiffness of the structure.
         forces, states = self.elements.forces(point.omega, unknowns)
-        deviation = forces - self.reference[:, None] * unknowns
+        displacements = unknowns - self._flexibility[:, None] * forces
+        deviation = forces - self.reference[:, None] * displacements
         moved = point.respond(deviation)
-        residual = unknowns - point.linear + moved
+        residual = displacements - point.linear + moved
         # Parts of the motion, and not of that by the loads: near a resonance of the stuck structure this is far larger.
         size, terms = norm(unknowns) + norm(residual), point.load + norm(moved)
         return Evaluation(residual, forces, states, size, terms), deviation
@@ -122,7 +142,7 @@ class ReceptanceBalance:
             if which.any():
                 # Cells of an Iwan contact have parts of the reference of their rows.
                 shares = penalties(block)[which] / self._penalties[rows]
-                cells.append(self._beyond(rows, local, self.reference[rows] * shares))
+                cells.append(self._beyond(rows, local, self.reference[rows] * shares, block.kind != ELASTIC))
         return tuple(cells), slopes.by_omega
 
     def _moving(self, unknowns: np.ndarray, deviation: np.ndarray, states: tuple[np.ndarray, ...]) -> list[np.ndarray]:
@@ -138,6 +158,8 @@ class ReceptanceBalance:
     def _moving_ones(
         self, block: FrictionBlock, unknowns: np.ndarray, deviation: np.ndarray, states: np.ndarray
     ) -> np.ndarray:
+        if block.kind != ELASTIC:  # its force is one beyond the reference, whatever it does
+            return np.ones(len(block.rows), dtype=bool)
         rows = block.rows
         reference, size = self.reference[rows], np.abs(unknowns[rows]).max(axis=(1, 2))
         beyond = np.abs(deviation[rows])
@@ -149,12 +171,17 @@ class ReceptanceBalance:
         # Cells of a contact share its rows: all of them are active, or none.
         return np.isin(block.contacts, block.contacts[moving])
 
-    def _beyond(self, rows: np.ndarray, local: np.ndarray, reference: np.ndarray) -> ActiveCells:
+    def _beyond(self, rows: np.ndarray, local: np.ndarray, reference: np.ndarray, rigid: bool = False) -> ActiveCells:
         """Cells with their Jacobians (cells, columns · coefficients, ...), less their references (cells, columns)."""
-        blocks = local.copy()
+        blocks, own = local.copy(), None
         diagonal = np.arange(blocks.shape[1])
-        blocks[:, diagonal, diagonal] -= np.repeat(reference, self.series.count, axis=1)
-        return ActiveCells(rows, blocks)
+        stiffness = np.repeat(reference, self.series.count, axis=1)
+        if rigid:
+            # ∂u/∂w = 1 - λ'/ε, and ∂(λ - r u)/∂w = λ' - r + r λ'/ε.
+            own = -np.repeat(self._flexibility[rows], self.series.count, axis=1)[:, :, None] * local
+            blocks -= stiffness[:, :, None] * own
+        blocks[:, diagonal, diagonal] -= stiffness
+        return ActiveCells(rows, blocks, own)
 
     @cached_property
     def _penalties(self) -> np.ndarray:

@@ -1,7 +1,8 @@
 r"""The Jacobian of the balance by receptances, and the linear systems with it.
 
 :math:`J = 1 + G\,m`, with one block m for each element that does not do what its reference says. With a the rows of
-these elements, :math:`J x = b` is :math:`(1 + G_{aa} m)\,x_a = b_a` and :math:`x = b - G_a m\,x_a` on all rows.
+these elements, :math:`J x = b` is :math:`(1 + G_{aa} m)\,x_a = b_a` and :math:`x = b - G_a m\,x_a` on all rows. Rigid
+contacts, whose unknowns are not their displacements, add a block to the 1.
 
 Few active rows are solved for by a dense matrix. Many are solved for by GMRES: a product costs one block for each
 element and one product with the compliance for all harmonics. Its preconditioner is the inverse of :math:`1 + G m` of
@@ -40,10 +41,13 @@ KRYLOV, CYCLES = 200, 3
 
 @dataclass(frozen=True)
 class ActiveCells:
-    """Elements of a kind: their rows (cells, columns), and the blocks of m (cells, unknowns, unknowns)."""
+    """Elements of a kind: their rows (cells, columns), and the blocks of m (cells, unknowns, unknowns). ``own``: those
+    that rigid contacts add to the unit matrix.
+    """
 
     rows: np.ndarray
     blocks: np.ndarray
+    own: np.ndarray | None = None
 
     @cached_property
     def share(self) -> bool:
@@ -249,6 +253,10 @@ class ReceptanceTangent:
             for place, block in zip(places, cells.blocks, strict=True):
                 columns = response[:, place].reshape(count, -1) @ block
                 matrix.reshape(count, len(self._rows), size)[:, place] += columns.reshape(count, len(place), size)
+            if cells.own is not None:
+                for place, block in zip(places, cells.own, strict=True):
+                    unknowns = (place[:, None] * size + np.arange(size)).ravel()
+                    matrix[np.ix_(unknowns, unknowns)] += block
         if self._support is not None:
             support = self._stiffness * self._support @ self._support.T
             of = matrix.reshape(count, len(self._rows), size)
@@ -279,7 +287,13 @@ class ReceptanceTangent:
             force = self._times(values)
             # One product for all harmonics: G_0 is real. The gains of the modes are complex, but the modes are few.
             static = (compliance @ force.astype(compliance.dtype)).astype(float)
-            return values + static + shapes @ self.point.with_gains(shapes.T @ force), force
+            moved = values + static + shapes @ self.point.with_gains(shapes.T @ force)
+            for places, cells in zip(self._places, self.cells, strict=True):
+                if cells.own is not None:
+                    moved[places] += (cells.own @ values[places].reshape(*cells.own.shape[:2], 1)).reshape(
+                        *places.shape, -1
+                    )
+            return moved, force
 
         return product
 
@@ -314,6 +328,7 @@ class ReceptanceTangent:
             compliance = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
             product = (compliance @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
             product[:, np.arange(columns * size), np.arange(columns * size)] += 1.0
+            product += 0.0 if cells.own is None else cells.own
             try:
                 inverses = np.linalg.inv(product)
             except np.linalg.LinAlgError:  # an element that alone holds a part, and slips

@@ -83,10 +83,12 @@ def _by_receptances(
     for system in perturbed:
         push = series.phasors(_step(system.load_coefficients(series, point.omega))) - _unbalanced(system, point, motion)
         elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
-        acting, _ = replace(balance.elements, lowered=elements).forces(point.omega, solution.unknowns)
+        # The parameter may change the forces and, of rigid contacts, displacements where what they predict is held.
+        moving = replace(balance, lowered=elements)
+        displaced = _step(moving.displacements(solution.unknowns))
         pushes.append(series.coefficients(push))
-        forces.append(_step(acting))
-        residuals.append(point.respond(forces[-1]) - rows @ point.answer(pushes[-1]))
+        forces.append(_step(moving.deviation(point.omega, solution.unknowns)))
+        residuals.append(displaced + point.respond(forces[-1]) - rows @ point.answer(pushes[-1]))
     moved = -np.moveaxis(tangent.solve(np.stack(residuals, axis=2)), 2, 0)
     # dx/dp = Z_r⁻¹ (f' - Z' x - Bᵀ (∂λ/∂p + m du/dp)): the motion by what the parameter adds to all forces.
     return np.stack(

@@ -114,7 +114,7 @@ def backbone(
     require_still(system, "backbone")
     method = method or HarmonicBalance()
     require_one_period(method, "backbone")
-    method = replace(method, solver=chosen_solver(lower(system), method))
+    method = replace(method, solver=chosen_solver(lower(system), method, stability=True))
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
     posed = _PosedBackbone(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)
     nonlinear_mode, motions = _follow(posed, method.first())

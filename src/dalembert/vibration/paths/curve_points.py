@@ -8,6 +8,7 @@ from dalembert.errors import InputError
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import RECEPTANCE
 from dalembert.vibration.balance.newton import Solution
+from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.fourier import in_orders
 from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.paths.curve import FrequencyCurve
@@ -23,12 +24,10 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
             f"{where}: the point is {point}; expected a number below {len(curve)}, the points of the curve"
         )
     unknowns, samples, orders = curve.unknowns[point], int(curve.samples[point]), problem.method.orders
-    if "control" in curve.provenance:
-        # Its unknowns have a row more than those of other equations.
-        rows = curve.displacements[point]
-        unknowns = rows if problem.by_receptances else rows[problem.lowered.coordinates.rows]
-    else:
-        unknowns = _in_unknowns_of(problem, curve, unknowns)
+    by_receptances = curve.provenance["method"].get("solver") == RECEPTANCE
+    if by_receptances != problem.by_receptances or "control" in curve.provenance:
+        # Unknowns of another solver, or with a row more for a held amplitude.
+        unknowns = _in_unknowns_of(problem, curve.displacements[point], curve.forces[point])
     if set(curve.orders) < set(orders):
         unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
     if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):
@@ -54,17 +53,14 @@ def measured_again(problem: Equations, before: Equations, solution: Solution) ->
     return problem.solve(unknowns, solution.omega, solution.samples)
 
 
-def _in_unknowns_of(problem: Equations, curve: FrequencyCurve, unknowns: np.ndarray) -> np.ndarray:
-    """Return the unknowns (q, coefficients) of a point of a curve as those of equations with another solver."""
-    by_receptances = curve.provenance["method"].get("solver") == RECEPTANCE
-    if by_receptances == problem.by_receptances:
-        return unknowns
-    coordinates, rows = problem.lowered.coordinates, len(problem.lowered.row_names)
-    if by_receptances and len(unknowns) == rows:
-        return unknowns[coordinates.rows]
-    if problem.by_receptances and len(unknowns) == len(coordinates.rows):
-        return coordinates.combination @ unknowns
-    return unknowns
+def _in_unknowns_of(problem: Equations, rows: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return displacements and forces of all rows that elements see, (rows, coefficients), as unknowns."""
+    balance = problem.balance(problem.method.first_samples)
+    if len(rows) != problem.lowered.seen:
+        return rows
+    if isinstance(balance, ReceptanceBalance):
+        return balance.unknowns(rows, forces)
+    return rows[problem.lowered.coordinates.rows]
 
 
 def require_full_load(curve: FrequencyCurve, where: str) -> None:

@@ -101,7 +101,7 @@ class PosedCurve:
 
     def solved(self, method: HarmonicBalance) -> HarmonicBalance:
         """Return the method with a way to write the structure."""
-        return replace(method, solver=chosen_solver(lower(self.system), method))
+        return replace(method, solver=chosen_solver(lower(self.system), method, self.stability))
 
     def equations(self, method: HarmonicBalance) -> Equations:
         """The equations of the system with the harmonics of a method."""

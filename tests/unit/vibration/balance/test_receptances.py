@@ -231,15 +231,61 @@ def test_a_curve_is_used_by_what_needs_dynamic_stiffnesses():
     np.testing.assert_allclose(begun.response, again.response, atol=1e-9)
 
 
-def test_rigid_contacts_need_dynamic_stiffnesses():
+@pytest.mark.parametrize(
+    ("prediction", "more", "words"),
+    [
+        ("velocity", {}, "is rigid and predicts velocities"),
+        ("displacement", {"stability": True}, "is rigid"),
+    ],
+)
+def test_rigid_contacts_that_need_dynamic_stiffnesses(prediction: str, more: dict[str, bool], words: str):
     posed = hardening()
-    posed.add(FrictionContact("heel", "m1", friction=0.5, preload=0.1, law=Rigid()))
+    posed.add(FrictionContact("heel", "m1", friction=0.5, preload=0.1, law=Rigid(prediction=prediction)))
     with pytest.raises(InputError) as error:
-        frequency_response(posed, np.array([0.1]), HarmonicBalance(3, solver="receptance"))
+        frequency_response(posed, np.array([0.1]), HarmonicBalance(3, solver="receptance"), **more)
     assert str(error.value) == (
-        "HarmonicBalance: solver is 'receptance', but the contact 'heel' is rigid, which needs dynamic stiffnesses. "
+        f"HarmonicBalance: solver is 'receptance', but the contact 'heel' {words}, which needs dynamic stiffnesses. "
         "Use solver='stiffness'"
     )
+
+
+def rigid_contacts(to: VibrationSystem) -> None:
+    """Rigid contacts in one and two directions, with constant and with varying load, beside an elastic one."""
+    to.add(FrictionContact("line", "a", friction=0.4, preload=0.8, law=Rigid()))
+    sides = {"tangential": ("x", "y"), "friction": 0.4}
+    to.add(FrictionContact("pair", "a", "b", preload=0.4, normal="-z", law=Rigid(gap=0.02), **sides))
+    to.add(FrictionContact("plane", "c", "b", preload=0.4, law=Rigid(), **sides))
+    to.add(FrictionContact("elastic", "c", tangential=("z",), friction=0.4, preload=0.5, law=ElasticSlider(3.0)))
+
+
+def test_rigid_contacts_move_as_by_dynamic_stiffnesses():
+    posed, frequencies = system(rigid_contacts), np.array([0.3, 0.36, 0.42])
+    curve, other = (
+        frequency_response(posed, frequencies, replace(BY_RECEPTANCES, solver=solver), check=False)
+        for solver in ("receptance", "stiffness")
+    )
+    assert curve.converged.all()
+    assert other.converged.all()
+    assert {1, 2} <= set(np.unique(curve.states))
+    for name in ("response", "displacements", "forces"):
+        np.testing.assert_allclose(getattr(curve, name), getattr(other, name), rtol=0, atol=1e-8)
+    # Each starts from a point of the other, where nothing is left to do.
+    for begun, method in ((other, BY_RECEPTANCES), (curve, replace(BY_RECEPTANCES, solver="stiffness"))):
+        again = frequency_response(posed, frequencies[[1]], method, start=(begun, 1), check=False)
+        assert again.iterations[0] <= 1
+
+
+@pytest.mark.parametrize("direct", [120, 0], ids=["dense", "iterated"])
+def test_the_tangent_of_rigid_contacts_is_that_of_differences(direct: int, monkeypatch):
+    monkeypatch.setattr("dalembert.vibration.balance.receptance_tangent.DIRECT", direct)
+    balance, point, place = point_of(rigid_contacts, "general")
+    tangent = balance.linearised(point, place)[1]
+    chance = np.random.default_rng(3).normal(size=place.shape)
+    step = 1e-7
+    moved = [balance.at(point, place + sign * step * chance).residual for sign in (1, -1)]
+    difference = (moved[0] - moved[1]) / (2 * step)
+    solved = tangent.solve(difference[:, :, None], 1e-12)[:, :, 0]
+    np.testing.assert_allclose(solved, chance, rtol=0, atol=1e-5)
 
 
 def row_of_masses(count: int) -> VibrationSystem:
@@ -290,6 +336,7 @@ def parametrised(
     result.add(FrictionContact("cells", "c", tangential=("y",), friction=friction, preload=1.0, law=cells))
     result.add(UserLaw("drag", "c.z", function=drag, values=[drag_of]))
     result.add(UserElement("user", ["a.x"], lambda u: cubic * u**3))
+    result.add(FrictionContact("rigid", "b", tangential=("y",), friction=friction, preload=0.5, law=Rigid()))
     return result
 
 

@@ -74,7 +74,8 @@ _NAMES = {
         VibrationSystem HarmonicForce StaticForce Unbalance TabulatedForce BaseExcitation
         FrictionContact ElasticSlider Iwan Rigid
         CubicSpring Gap BilinearStop BoucWen FourParameterIwan LawElement UserElement UserLaw law
-        HarmonicBalance FrequencyCurve FrequencyResponse HeldAmplitude follow_branch frequency_response
+        HarmonicBalance FrequencyCurve FrequencyResponse HeldAmplitude frequency_response
+        coexisting_motions follow_branch
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
         Deformation deformation StaticContact static_contact

@@ -231,6 +231,7 @@ from dalembert.vibration import UserElement as UserElement
 from dalembert.vibration import UserLaw as UserLaw
 from dalembert.vibration import VibrationSystem as VibrationSystem
 from dalembert.vibration import backbone as backbone
+from dalembert.vibration import coexisting_motions as coexisting_motions
 from dalembert.vibration import compare_in_time as compare_in_time
 from dalembert.vibration import deformation as deformation
 from dalembert.vibration import floquet_multipliers as floquet_multipliers

@@ -26,8 +26,8 @@ CLOSE = 1e-5
 REACHES = (1.0, 4.0, 16.0, 64.0)
 """Steps beyond a sharp turn, in parts of the one that failed before it."""
 CLOSED, JOINED = "closed", "joined"
-AWAY = 4.0
-"""Distance from its first point, in longest steps, from which on a path may come back to it."""
+AWAY = 2.0
+"""Distance from its first point, in steps, from which on a path may come back to it."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
@@ -142,7 +142,7 @@ def along(
         if fold is not None:
             yield PathPoint(fold, fold=True)
         gone = max(gone, first.distance(solution))
-        if gone > AWAY * longest and first.meets(solution, direction, step):
+        if gone > AWAY * step and first.meets(solution, direction, step):
             yield PathPoint(solution, fold=folds and fold is None, end=CLOSED)
             return
         yield PathPoint(solution, fold=folds and fold is None)

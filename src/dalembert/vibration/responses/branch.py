@@ -14,7 +14,7 @@ from dalembert.errors import InputError, SolveError, counted
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import direction_at
 from dalembert.vibration.balance.equations import Equations, equations
-from dalembert.vibration.balance.harmonic_balance import STIFFNESS, HarmonicBalance
+from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import CrossingPlane, Solution
 from dalembert.vibration.balance.tangents import DenseTangent
 from dalembert.vibration.fourier import in_orders
@@ -32,6 +32,8 @@ ABSENT, PRESENT = 1e-6, 1e-4
 """Coefficients that the curve lacks, as parts of its motion, and that the other branch has, as parts of φ."""
 SINGULAR = 1e-2
 """Smallest singular value of the Jacobian, as part of the one before it, that is none at a bifurcation."""
+INVERSE = 3
+"""Steps of inverse iteration, each of which reduces the error of the null vector by that part."""
 
 
 @takes_checked("observe")
@@ -71,7 +73,7 @@ def follow_branch(
     Raises
     ------
     InputError
-        For a curve without such a marker, and a system of more than 500 unknowns.
+        For a curve without such a marker.
     SolveError
         Where no other branch is found.
 
@@ -99,7 +101,7 @@ def follow_branch(
         )
     kind, point = points[number]
     known = HarmonicBalance(**curve.provenance["method"])
-    method = replace(known, odd_only=False, solver=STIFFNESS, periods=known.periods * (2 if kind == DOUBLING else 1))
+    method = replace(known, odd_only=False, periods=known.periods * (2 if kind == DOUBLING else 1))
     problem, before = equations(system, method, stability=stability), equations(system, known)
     # The motion at the bifurcation, with the harmonics of the branch.
     ratio = method.periods // known.periods
@@ -117,20 +119,14 @@ def follow_branch(
 
 def _beside(problem: Equations, at: Solution) -> BranchStart:
     """Return a motion on the other branch, and the direction away from the curve."""
-    if not isinstance(at.tangent, DenseTangent):
-        raise InputError(
-            f"follow_branch: the system has {at.unknowns.size} unknowns, more than its dense matrices take. Reduce the "
-            "structure, or use fewer harmonics"
-        )
-    _, sizes, shapes = np.linalg.svd(at.tangent.matrix)
+    shape = _null_vector(at)
     size, width = norm(at.unknowns) or 1.0, 0.1 * at.omega
-    direction = np.append(shapes[-1], 0.0)
-    # What the curve lacks by its symmetry, or its shorter period: zero there, and moved by φ.
-    shape = np.abs(shapes[-1]).reshape(at.unknowns.shape)
-    broken = (np.abs(at.unknowns) < ABSENT * size) & (shape > PRESENT)
-    if len(sizes) > 1 and sizes[-1] <= SINGULAR * sizes[-2]:
+    if shape is not None:
+        direction = np.append(shape.ravel(), 0.0)
+        # What the curve lacks by its symmetry, or its shorter period: zero there, and moved by φ.
+        broken = (np.abs(at.unknowns) < ABSENT * size) & (np.abs(shape) > PRESENT)
         for part in (sign * distance for distance in DISTANCES for sign in (1.0, -1.0)):
-            guess = at.unknowns + part * size * shapes[-1].reshape(at.unknowns.shape)
+            guess = at.unknowns + part * size * shape
             # The plane is across φ: the curve crosses it at the bifurcation alone.
             plane = CrossingPlane(direction, guess, at.omega, size, width)
             solution = problem.solve(guess, at.omega, at.samples, plane)
@@ -140,3 +136,19 @@ def _beside(problem: Equations, at: Solution) -> BranchStart:
         f"follow_branch: no other branch is found at {problem.hertz(at.omega):.6g} Hz. Follow the curve with smaller "
         "steps (resolution), or with more harmonics"
     )
+
+
+def _null_vector(at: Solution) -> np.ndarray | None:
+    """The unit null vector φ of the Jacobian, (unknowns, coefficients); None where it has none, or several."""
+    tangent = at.tangent
+    if isinstance(tangent, DenseTangent):
+        _, sizes, shapes = np.linalg.svd(tangent.matrix)
+        alone = len(sizes) > 1 and sizes[-1] <= SINGULAR * sizes[-2]
+        return shapes[-1].reshape(at.unknowns.shape) if alone else None
+    # Inverse iteration on two vectors at once: one of them has to grow far more than the other.
+    space = np.linalg.qr(np.random.default_rng(0).normal(size=(at.unknowns.size, 2)))[0]
+    growth = np.zeros((2, 2))
+    for _ in range(INVERSE):
+        space, growth = np.linalg.qr(tangent.solve(space.reshape(*at.unknowns.shape, 2)).reshape(-1, 2))
+    first, other = np.abs(np.diag(growth))
+    return space[:, 0].reshape(at.unknowns.shape) if other <= SINGULAR * first else None

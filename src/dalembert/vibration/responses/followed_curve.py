@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dalembert.errors import SolveError
 from dalembert.findings import Finding
 from dalembert.forward import Checkpoint
 from dalembert.vibration.balance.arc_length import ACROSS_FOLD, JOINED, MANY_ROWS, PathPoint, along
@@ -133,12 +134,15 @@ class FollowedCurve:
 
 
 def follow(
-    posed: PosedCurve, problem: Equations, start: CurvePoint | None, stability: bool, check: bool
-) -> FollowedCurve:
-    """Follow the curve with a number of harmonics; ``check``: whether the largest motion is kept."""
+    posed: PosedCurve, problem: Equations, start: CurvePoint | None, stability: bool, check: bool,
+    points: Iterator[PathPoint] | None = None,
+) -> FollowedCurve:  # fmt: skip
+    """Follow the curve with a number of harmonics. ``check``: whether the largest motion is kept; ``points``: in place
+    of those of the path that the curve asks for.
+    """
     rows = observed(problem.lowered, posed.observe)
     dofs = tuple(problem.lowered.structure.dofs.names[row] for row in rows)
-    points = _points(posed, problem, start)
+    points = _points(posed, problem, start) if points is None else points
     records, causes, unjudged, done = [], [], [], 0.0
     top: Solution | None = None
     left_range, end_inside = False, ""
@@ -156,6 +160,8 @@ def follow(
             frequency, response = records[-1]["frequencies"], records[-1]["response"]
             posed.on_point(FollowedPoint(frequency, response, dofs, done, problem.method.orders))
     markers = tuple((marker, row) for row, record in enumerate(records) if (marker := record.pop("marker")))
+    if not records:
+        raise SolveError("no motion was found at any of the frequencies; try others, or more samples")
     arrays = {name: np.array([record[name] for record in records]) for name in records[0]}
     lost = tuple(filter(None, causes))
     return FollowedCurve(problem, dofs, arrays, markers, lost, tuple(unjudged), top, left_range, end_inside)

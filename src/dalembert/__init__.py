@@ -75,7 +75,7 @@ _NAMES = {
         FrictionContact ElasticSlider Iwan Rigid
         CubicSpring Gap BilinearStop BoucWen FourParameterIwan LawElement UserElement UserLaw law
         HarmonicBalance FrequencyCurve FrequencyResponse HeldAmplitude frequency_response
-        coexisting_motions follow_branch
+        coexisting_motions follow_branch isolated_branches
         Backbone ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
         Deformation deformation StaticContact static_contact

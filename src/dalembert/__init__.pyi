@@ -238,6 +238,7 @@ from dalembert.vibration import floquet_multipliers as floquet_multipliers
 from dalembert.vibration import follow_branch as follow_branch
 from dalembert.vibration import frequency_response as frequency_response
 from dalembert.vibration import frequency_responses as frequency_responses
+from dalembert.vibration import isolated_branches as isolated_branches
 from dalembert.vibration import law as law
 from dalembert.vibration import static_contact as static_contact
 from dalembert.vibration import steady_state as steady_state

@@ -24,7 +24,7 @@ _NAMES = {
     "responses.control": "HeldAmplitude",
     "responses.forward_model": "FrequencyResponse",
     "responses.branch": "follow_branch",
-    "responses.coexisting_motions": "coexisting_motions",
+    "responses.coexisting_motions": "coexisting_motions isolated_branches",
     "responses.followed_curve": "FollowedPoint",
     "responses.frequency_response": "frequency_response",
     "responses.curve_family": "CurveFamily Envelope",

@@ -21,6 +21,7 @@ from dalembert.vibration.paths.deformation import Deformation as Deformation
 from dalembert.vibration.paths.deformation import deformation as deformation
 from dalembert.vibration.responses.branch import follow_branch as follow_branch
 from dalembert.vibration.responses.coexisting_motions import coexisting_motions as coexisting_motions
+from dalembert.vibration.responses.coexisting_motions import isolated_branches as isolated_branches
 from dalembert.vibration.responses.control import HeldAmplitude as HeldAmplitude
 from dalembert.vibration.responses.curve_family import CurveFamily as CurveFamily
 from dalembert.vibration.responses.curve_family import Envelope as Envelope

@@ -28,6 +28,8 @@ REACHES = (1.0, 4.0, 16.0, 64.0)
 CLOSED, JOINED = "closed", "joined"
 AWAY = 2.0
 """Distance from its first point, in steps, from which on a path may come back to it."""
+FAR = 5.0
+"""Distance of the point after a step, in steps, from which on it is one of another path."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
@@ -184,7 +186,8 @@ class PathTangent:
         guess, omega = self._guess(length)
         plane = CrossingPlane(self.direction, guess, omega, self.size, self.width)
         solution = equations.solve(guess, omega, self.known.samples, plane)
-        if not solution.converged:
+        # The plane may cross another path far away.
+        if not solution.converged or self.distance(solution) > FAR * length:
             return solution, None
         try:
             return solution, direction_at(solution, self.direction, self.width, self.size)

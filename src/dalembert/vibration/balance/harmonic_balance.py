@@ -62,7 +62,7 @@ class HarmonicBalance(Checked):
     solver : {"auto", "stiffness", "receptance"}
         How the structure is written at the coordinates of contacts and springs. ``"stiffness"``: a dynamic stiffness,
         for each frequency. ``"receptance"``: the compliance and the modes of the structure whose contacts stick,
-        computed once: for interfaces of many elastic contacts, without stability. ``"auto"``: receptances where the
+        computed once: for interfaces of many contacts. ``"auto"``: receptances where the
         contacts of a curve or a model have more than 500 unknowns, and the structure has more than 1500 degrees of
         freedom or a damping that couples no modes.
     periods : int

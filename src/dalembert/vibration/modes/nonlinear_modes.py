@@ -87,7 +87,7 @@ def backbone(
     ------
     InputError
         For amplitudes that are not positive, or ends that are equal, a mode that is not there, an unknown degree of
-        freedom, and a structure that is too large for dense matrices.
+        freedom, and a structure without many contacts that is too large for dense matrices.
     SolveError
         Where the static forces find no balance.
 

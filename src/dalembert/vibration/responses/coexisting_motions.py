@@ -9,13 +9,15 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import PathPoint, along, on_border
-from dalembert.vibration.balance.equations import Equations, require_one_period
+from dalembert.vibration.balance.equations import Equations, equations, require_one_period
 from dalembert.vibration.balance.first_guesses import Loading
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.interface.condensed_structure import norm
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.responses.followed_curve import PosedCurve, conclude, follow
+from dalembert.vibration.paths.curve_points import require_full_load
+from dalembert.vibration.responses.followed_curve import ARC_LENGTH, PosedCurve, conclude, follow
+from dalembert.vibration.responses.frequency_response import frequency_response
 from dalembert.vibration.system.requirements import positive_numbers, require_forces, require_viscous
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -40,8 +42,8 @@ def coexisting_motions(
     """Return the motions at each frequency that a path over the amplitude of the forces passes.
 
     At each frequency the varying forces are scaled from almost none up to ``most`` times their value, by arc length.
-    Motions at the value itself are kept, also those of an isola, which no curve over frequency from outside reaches.
-    From one of its motions, a curve by arc length is the whole isola.
+    Motions at the value itself are kept, also those of an isolated branch, to which no curve from outside comes. From
+    one of its motions, a curve by arc length is the whole of it.
 
     Parameters
     ----------
@@ -68,14 +70,14 @@ def coexisting_motions(
 
     Examples
     --------
-    A hardening spring has three motions beside its resonance, and a damper that takes less at medium speeds an isola:
+    A hardening spring has three motions beside its resonance, of which one is unstable:
 
     >>> import dalembert as da
     >>> system = da.VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.05)]))
     >>> force, spring = system.add(da.HarmonicForce("m", 0.18)), system.add(da.CubicSpring("k3", "m", stiffness=0.1))
     >>> motions = coexisting_motions(system, [0.19], da.HarmonicBalance(3), stability=True)
     >>> motions.amplitude("m").round(2).tolist(), motions.stable.tolist()
-    ([0.45, 2.08, 2.56], [1, 0, 1])
+    ([0.43, 2.23, 2.51], [1, 0, 1])
     """
     places = positive_numbers(list(np.atleast_1d(frequencies)), "coexisting_motions", "frequencies", "Hz")
     method = method or HarmonicBalance()
@@ -99,12 +101,86 @@ def coexisting_motions(
     return conclude(posed, follow(posed, problem, None, stability, check=False, points=points))
 
 
+@takes_checked("frequencies")
+@single_thread()
+def isolated_branches(
+    system: VibrationSystem,
+    curve: FrequencyCurve,
+    frequencies: np.ndarray | Sequence[float],
+    *,
+    most: float = 10.0,
+    stability: bool = False,
+    checkpoint: Checkpoint | None = None,
+) -> tuple[FrequencyCurve, ...]:
+    """Return the branches that pass motions at some frequencies and are no part of a curve.
+
+    Motions are those of :func:`coexisting_motions`. From each that neither the curve nor a branch before passes, the
+    branch is followed by arc length; an isolated one is closed.
+
+    Parameters
+    ----------
+    system : VibrationSystem
+        That of the curve.
+    curve : FrequencyCurve
+        Of which the branches have the harmonics, the range of frequencies and the observed degrees of freedom.
+    frequencies : array, shape (frequencies,)
+        Hz.
+    most, checkpoint
+        As of :func:`coexisting_motions`.
+    stability : bool
+        Whether that of the points of the branches is found.
+
+    Raises
+    ------
+    InputError
+        As of :func:`coexisting_motions`, and for a curve of a held amplitude.
+
+    Examples
+    --------
+    >>> import dalembert as da
+    >>> def damper(u, v, z, numbers, force):
+    ...     force[0] = -0.1 * v[0] ** 3 + 0.03 * v[0] ** 5
+    >>> system = da.VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
+    >>> force, law = system.add(da.HarmonicForce("m", 0.0375)), system.add(da.UserLaw("d", "m", function=damper))
+    >>> curve = da.frequency_response(system, (0.12, 0.2), da.HarmonicBalance(1))
+    >>> (branch,) = isolated_branches(system, curve, [0.159])
+    >>> branch.findings[0].values["reason"], float(branch.amplitude("m").max().round(2))
+    ('closed', 1.47)
+    """
+    require_full_load(curve, "isolated_branches")
+    method = HarmonicBalance(**curve.provenance["method"])
+    options = {"observe": curve.dofs, "stability": stability, "checkpoint": checkpoint}
+    motions = coexisting_motions(system, frequencies, method, most=most, observe=curve.dofs, checkpoint=checkpoint)
+    window = float(np.nanmin(curve.frequencies)), float(np.nanmax(curve.frequencies))
+    problem, branches = equations(system, method, checkpoint), []
+    for point in range(len(motions)):
+        if not any(_passes(problem, known, motions, point) for known in (curve, *branches)):
+            options["start"] = motions, point
+            branches.append(frequency_response(system, window, method, continuation=ARC_LENGTH, check=False, **options))
+    return tuple(branches)
+
+
+def _passes(problem: Equations, curve: FrequencyCurve, motions: FrequencyCurve, point: int) -> bool:
+    """Whether a curve passes a motion at its frequency."""
+    place, motion = motions.frequencies[point], motions.unknowns[point]
+    ahead = curve.frequencies - place
+    for first in np.flatnonzero((ahead[:-1] * ahead[1:] <= 0) & curve.converged[:-1] & curve.converged[1:]):
+        span = curve.frequencies[first + 1] - curve.frequencies[first]
+        part = -ahead[first] / span if span else 0.0
+        guess = curve.unknowns[first] + part * (curve.unknowns[first + 1] - curve.unknowns[first])
+        solution = problem.solve(guess, problem.omega(place), int(motions.samples[point]))
+        if solution.converged and norm(solution.unknowns - motion) <= SAME * norm(motion):
+            return True
+    return False
+
+
 def _passed(problem: Equations, omega: float, most: float) -> Iterator[Solution]:
     """Yield the motions at which the path over the force passes its value."""
     samples = problem.method.first_samples
     loading = Loading(problem.balance(samples), problem.method, problem.at(omega))
     before: Solution | None = None
-    for point in along(loading, LEAST, most, loading.first(LEAST)):
+    # A path may turn back behind its first point, through none of the force even, before it comes to all of it.
+    for point in along(loading, -most, most, loading.first(LEAST)):
         solution = point.solution  # its ω is the factor of the forces
         if not solution.converged:
             return

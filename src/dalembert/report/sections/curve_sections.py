@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from dalembert.errors import counted
 from dalembert.report import charts
 from dalembert.report.headline import headline_of
 from dalembert.report.look import plain
@@ -15,6 +16,7 @@ from dalembert.report.sections.shape_sections import deformed, in_time, nonlinea
 from dalembert.structure import ReductionErrors
 from dalembert.tables import Table, percent, shown
 from dalembert.vibration import Backbone, Deformation, FrequencyCurve, TimeComparison
+from dalembert.vibration.balance.arc_length import CLOSED
 from dalembert.vibration.paths.focus import Look, dissipation_of, marked, of_springs, state_shares, unstable
 
 FEW_SPRINGS = 6
@@ -31,7 +33,7 @@ def frequency_curve(curve: FrequencyCurve, options: ReportOptions) -> list[Secti
     if curve.converged.any():
         look = Look.of(curve, *shown_of)
         listed = (table for name in ("peaks", "marked-points", "not-found") for table in tables[name])
-        sections.append(forced_response(look, options.first(Backbone), listed))
+        sections.append(forced_response(look, options.first(Backbone), listed, options.each(FrequencyCurve)))
         if "control" in curve.provenance:
             how = "All forces but static ones have this factor, so that the amplitude is held."
             sections.append(Section("Held amplitude", (Plot("load-factors", charts.load_factors(curve), how),)))
@@ -45,15 +47,19 @@ def frequency_curve(curve: FrequencyCurve, options: ReportOptions) -> list[Secti
     return [*sections, *beside(options, curve), balance]
 
 
-def forced_response(look: Look, mode: Backbone | None, tables: Iterable[Table]) -> Section:
-    """The curve of the degrees of freedom looked at, and tables of its peaks and marked points."""
+def forced_response(
+    look: Look, mode: Backbone | None, tables: Iterable[Table], branches: Mapping[str, FrequencyCurve] | None = None
+) -> Section:
+    """The curve of the degrees of freedom looked at with its branches, and tables of its peaks and marked points."""
     curve, sentences = look.curve, []
     how = "Each point is a periodic motion."
     how += " Symbols: where the path has a fold or changes its stability." if marked(curve) else ""
     how += " Dashed: unstable motions." if unstable(curve).any() else ""
     how += " Crosses: not found." if not curve.converged.all() else ""
     how += " Dotted: the nonlinear mode without force." if mode is not None else ""
-    plot = Plot("frequency-curve", charts.frequency_curve(curve, look.dofs, kind=look.kind, mode=mode), how)
+    plot = Plot(
+        "frequency-curve", charts.frequency_curve(curve, look.dofs, kind=look.kind, mode=mode, branches=branches), how
+    )
     if folds := [shown(float(curve.frequencies[point])) for point in marked(curve).get("fold", [])]:
         listed = folds[0] if len(folds) == 1 else f"{', '.join(folds[:-1])} and {folds[-1]}"
         sentences.append(
@@ -66,6 +72,13 @@ def forced_response(look: Look, mode: Backbone | None, tables: Iterable[Table]) 
         sentences.append(
             f"{int(bad.sum())} of {len(bad)} points, between {shown(float(between.min()))} and "
             f"{shown(float(between.max()))} Hz, are unstable: the structure does not stay in these motions."
+        )
+    for name, branch in (branches or {}).items():
+        low, high = (shown(float(end(branch.frequencies))) for end in (np.nanmin, np.nanmax))
+        closed = any(finding.values.get("reason") == CLOSED for finding in branch.findings)
+        sentences.append(
+            f"The {name or 'other branch'} lies between {low} and {high} Hz, {counted(len(branch), 'point')}"
+            + (", and is closed: no sweep of the frequency comes to it from outside." if closed else ".")
         )
     if len(look.dofs) < len(curve.dofs):
         sentences.append(

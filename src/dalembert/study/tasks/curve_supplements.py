@@ -1,11 +1,13 @@
 """Supplements of a response over frequency: its motion at the peak, points of it in time, a nonlinear mode."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
 
+from dalembert.errors import SolveError
 from dalembert.study.tables.dataclass_tables import buildable_table
 from dalembert.study.tables.study import Study
 from dalembert.study.tasks.task import load_further_results
@@ -14,6 +16,12 @@ from dalembert.study.text.table import StudyTable, completed
 
 COMPARISON, BACKBONE, DEFORMATION = "time_comparison", "backbone", "deformation"
 """What there may be beside a curve: options of a report, and names of files beside the result, ``NAME.nc``."""
+
+
+MOST_BRANCHES = 9
+"""Branches of each kind that are followed."""
+NEXT_TO = 1e-2
+"""Relative difference of frequencies up to which a branch ends at a marker."""
 
 
 class CompareInTimeTable(StudyTable):
@@ -53,7 +61,38 @@ def single_curve_supplements(study: Study, curve: Any, system: Any) -> dict[str,
         )
     if table.backbone is not None:
         further_results[BACKBONE] = table.backbone.follow(study, system)
-    return further_results
+    return {**further_results, **_branches(study, curve, system)}
+
+
+def _branches(study: Study, curve: Any, system: Any) -> dict[str, Any]:
+    """The branches that leave a curve, and those that it does not pass, by the names of their files."""
+    from dalembert.vibration import follow_branch, isolated_branches
+    from dalembert.vibration.stability.bifurcations import BRANCH, DOUBLING
+
+    table = study.table
+    followed: list[Any] = []
+    if table.branches:
+        places = [point for kind, point in curve.markers if kind in (BRANCH, DOUBLING)]
+        for number, point in enumerate(places[:MOST_BRANCHES]):
+            # A branch that joins its curve ends at another marker, from which it need not be followed again.
+            frequency = curve.frequencies[point]
+            if not any(_joins(branch, frequency) for branch in followed):
+                with suppress(SolveError):  # the marker stays in the report
+                    followed.append(
+                        follow_branch(system, curve, number, stability=True, observe=curve.dofs, check=False)
+                    )
+    alone: Any = ()
+    if table.isolated is not None:
+        options = {"stability": table.stability, "checkpoint": study.checkpoint}
+        alone = isolated_branches(system, curve, table.isolated, **options)[:MOST_BRANCHES]
+    named = ((f"branch_{number}", branch) for number, branch in enumerate(followed, 1))
+    return dict(named) | {f"isolated_{number}": branch for number, branch in enumerate(alone, 1)}
+
+
+def _joins(branch: Any, frequency: float) -> bool:
+    """Whether a branch ends on its curve next to a frequency."""
+    reasons = [finding.values.get("reason") for finding in branch.findings if finding.code == "end-not-reached"]
+    return "joined" in reasons and abs(branch.frequencies[-1] / frequency - 1) < NEXT_TO
 
 
 def family_supplements(study: Study, family: Any) -> dict[str, Any]:
@@ -78,6 +117,9 @@ def _deformed(study: Study, curve: Any, system: Any) -> dict[str, Any]:
 
 def load(result: Path) -> dict[str, Any]:
     """What was written beside a result."""
-    from dalembert.vibration import Backbone, Deformation, TimeComparison
+    from dalembert.vibration import Backbone, Deformation, FrequencyCurve, TimeComparison
 
-    return load_further_results(result, {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone})
+    kinds = {DEFORMATION: Deformation, COMPARISON: TimeComparison, BACKBONE: Backbone}
+    numbers = range(1, MOST_BRANCHES + 1)
+    curves = {f"{kind}_{number}": FrequencyCurve for kind in ("branch", "isolated") for number in numbers}
+    return load_further_results(result, kinds | curves)

@@ -63,6 +63,12 @@ class FrequencyResponseTable(StudyTable):
     amplitude: str = Field("peak", description="'peak', 'rms', or 'harmonic 1' and so on")
     stability: bool = Field(False, description="whether to find which points are stable, and where that changes")
     control: HeldAmplitudeTable | None = Field(None, description="an amplitude that a controller of the forces holds")
+    branches: bool = Field(
+        False, description="whether to follow the branches at branch points and period doublings; needs stability"
+    )
+    isolated: Frequencies | None = Field(
+        None, description="at which branches are sought that the curve does not pass, by a path over the forces"
+    )
     deformed: bool = Field(
         True,
         description="whether the report draws the motion at the peak, where the structure says where its nodes are",
@@ -90,12 +96,17 @@ class FrequencyResponseTable(StudyTable):
                 "continuation = 'arc-length'": self.continuation == "arc-length",
                 "stability": self.stability,
                 "compare_in_time": self.compare_in_time is not None,
+                "isolated": self.isolated is not None,
             }
             wrong += [
                 f"control: a held amplitude does not go with {what}; leave one of them out"
                 for what, present in refused.items()
                 if present
             ]
+        if self.branches and not (self.stability and self.continuation == "arc-length"):
+            wrong.append("branches: they begin at markers; give stability = true and continuation = 'arc-length'")
+        if self.isolated is not None and self.between is None:
+            wrong.append("isolated: the range of its branches is missing; give between = [begin, end]")
         if ends[0] == ends[1]:
             wrong.append(f"between: {ends[0]:g} Hz was given twice; expected two different frequencies")
         return wrong
@@ -108,6 +119,19 @@ class FrequencyResponseTable(StudyTable):
 
 class Response(Outcome):
     """A curve, or a family of them."""
+
+    @property
+    def supplements(self) -> list[Any]:
+        """What the report shows beside the result: its branches by their names."""
+        from dalembert.vibration import FrequencyCurve
+
+        branches = {
+            name.replace("_", " "): result
+            for name, result in self.further_results.items()
+            if isinstance(result, FrequencyCurve)
+        }
+        others = [result for result in self.further_results.values() if not isinstance(result, FrequencyCurve)]
+        return [*others, branches] if branches else others
 
     @property
     def summary(self) -> str:
@@ -169,8 +193,8 @@ class FrequencyResponseTask(Task):
             wrong += unnamed([table.sweep.parameter], file.parameters, "[frequency_response], sweep")
             wrong += [
                 f"[frequency_response], {key}: it belongs to one curve, and sweep makes several; leave one of them out"
-                for key in ("compare_in_time", "backbone")
-                if getattr(table, key) is not None
+                for key in ("compare_in_time", "backbone", "branches", "isolated")
+                if getattr(table, key)
             ]
         return wrong
 

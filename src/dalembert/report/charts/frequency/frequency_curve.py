@@ -30,6 +30,7 @@ def frequency_curve(
     *,
     kind: str = "peak",
     mode: Backbone | None = None,
+    branches: Mapping[str, FrequencyCurve] | None = None,
     title: str = "Forced response",
 ) -> go.Figure:
     """Amplitude over frequency along the path; dashed where it is unstable, with folds and points that were not found.
@@ -43,6 +44,8 @@ def frequency_curve(
         ``"peak"``, ``"rms"``, or ``"harmonic 1"`` and so on.
     mode : Backbone, optional
         A nonlinear mode, drawn as the line through the peaks of the degree of freedom that moves most.
+    branches : mapping of str to FrequencyCurve, optional
+        Other branches by their names, of the degree of freedom that moves most.
     title : str
 
     Returns
@@ -60,6 +63,9 @@ def frequency_curve(
     figure = go.Figure()
     for place, (dof, size) in enumerate(sizes.items()):
         _path(figure, curve, dof, factor * size, colour_of(place))
+    most = max(sizes, key=lambda dof: float(np.nanmax(sizes[dof], initial=0.0)))
+    for place, (name, branch) in enumerate((branches or {}).items(), len(sizes)):
+        _path(figure, branch, name, factor * branch.amplitude(most, kind), colour_of(place))
     for event, points in marked(curve).items():
         x = np.tile(curve.frequencies[points], len(sizes))
         y = np.concatenate([factor * size[points] for size in sizes.values()])
@@ -67,7 +73,6 @@ def frequency_curve(
         figure.add_scatter(x=x, y=y, name=event, mode="markers", marker=marker)
     _lost(figure, curve, {dof: factor * size for dof, size in sizes.items()})
     if mode is not None:
-        most = max(sizes, key=lambda dof: float(np.nanmax(sizes[dof], initial=0.0)))
         figure.add_trace(backbone_line(mode, most, kind, factor))
     y = {"title": labelled(size_label(kind), unit), **_axis(figure)}
     return themed(figure, title, 440, x="frequency (Hz)", y=y, showlegend=True)

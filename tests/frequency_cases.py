@@ -20,6 +20,7 @@ from dalembert.structure import (
     solid,
 )
 from dalembert.vibration import (
+    CubicSpring,
     ElasticSlider,
     FrequencyCurve,
     FrictionContact,
@@ -28,16 +29,20 @@ from dalembert.vibration import (
     HeldAmplitude,
     Newmark,
     StaticContact,
+    UserLaw,
     VibrationSystem,
     backbone,
     compare_in_time,
     deformation,
+    follow_branch,
     frequency_response,
     frequency_responses,
+    isolated_branches,
     static_contact,
     steady_state,
     track_resonance,
 )
+from dalembert.vibration.stability.bifurcations import rows_findings
 from lap_joint import bars, lap_joint
 from report_case import Case
 from vibrating_systems import chain, duffing, one_mass, two_masses
@@ -51,6 +56,26 @@ def _stuck() -> VibrationSystem:
     system = one_mass()
     system.forces[0] = replace(system.forces[0], amplitude=1e-3)
     return system
+
+
+def _branched() -> tuple[FrequencyCurve, dict[str, Any]]:
+    """A mass with a hardening spring that prefers no side, and the motions that do; an isolated branch of another."""
+    system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
+    system.add(HarmonicForce("m", 4.0))
+    system.add(CubicSpring("hardening", "m", stiffness=1.0))
+    ends = 0.12, 0.2
+    curve = frequency_response(system, ends, HarmonicBalance(9), continuation="arc-length", stability=True)
+    damped = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
+    damped.add(HarmonicForce("m", 0.0375))
+    damped.add(UserLaw("damper", "m", function=_damper))
+    outside = frequency_response(damped, ends, HarmonicBalance(1))
+    (isolated,) = isolated_branches(damped, outside, [HZ])
+    return curve, {"branches": {"branch 1": follow_branch(system, curve), "isolated 1": isolated}}
+
+
+def _damper(u, v, z, numbers, force):
+    """A damper that takes less at medium speeds."""
+    force[0] = -0.1 * v[0] ** 3 + 0.03 * v[0] ** 5
 
 
 def _bolted() -> StaticContact:
@@ -198,6 +223,14 @@ FREQUENCY_CASES: dict[str, Case] = {
             chain(), HZ * np.linspace(1.0, 2.2, 25), HarmonicBalance(harmonics=5, samples=256, iterations=7, halvings=0)
         ),
         ("points between", "were not found; they are marked", "Crosses: not found.", "Points that were not found"),
+    ),
+    "a response with other branches": Case(
+        _branched,
+        ("Branch 1 lies between", "Isolated 1 lies between", "and is closed: no sweep of the frequency comes to it"),
+    ),
+    "a response of which contacts are too many to judge": Case(
+        lambda: replace(one := _folded(stability=True), findings=(*one.findings, *rows_findings([0.2]))),
+        ("The stability of 1 point between 0.2 and 0.2 Hz is not known: more than",),
     ),
     "a response whose amplitude is held": Case(
         lambda: frequency_response(two_masses(), AROUND, FEW, control=HeldAmplitude("m2", 0.5)),

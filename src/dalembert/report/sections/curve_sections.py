@@ -75,11 +75,10 @@ def forced_response(
         )
     for name, branch in (branches or {}).items():
         low, high = (shown(float(end(branch.frequencies))) for end in (np.nanmin, np.nanmax))
+        where = f"lies between {low} and {high} Hz, {counted(len(branch), 'point')}"
         closed = any(finding.values.get("reason") == CLOSED for finding in branch.findings)
-        sentences.append(
-            f"The {name or 'other branch'} lies between {low} and {high} Hz, {counted(len(branch), 'point')}"
-            + (", and is closed: no sweep of the frequency comes to it from outside." if closed else ".")
-        )
+        where += ", and is closed: no sweep of the frequency comes to it from outside." if closed else "."
+        sentences.append(f"{(name or 'another branch').capitalize()} {where}")
     if len(look.dofs) < len(curve.dofs):
         sentences.append(
             f"Drawn are {len(look.dofs)} degrees of freedom of the {len(curve.dofs)} observed, in the table those that "

@@ -257,6 +257,60 @@ def test_hysteretic_damping_carries_a_curve_and_not_its_stability(write, tmp_pat
         plan(load(write(nonlinear)))
 
 
+STOPPED = """
+[model]
+[[model.mass]]
+name = "m"
+mass = "1 kg"
+[[model.spring]]
+first = "m"
+stiffness = "1 N/m"
+damping = "0.1 N*s/m"
+[[model.spring]]
+kind = "Gap"
+name = "stop"
+first = "m"
+stiffness = "4 N/m"
+[[model.force]]
+dof = "m"
+amplitude = "1 N"
+[harmonic_balance]
+harmonics = 5
+[frequency_response]
+between = ["0.34 Hz", "0.4 Hz"]
+continuation = "arc-length"
+"""
+
+
+def test_branches_are_kept_and_drawn_with_their_curve(write, tmp_path):
+    text = STOPPED + "stability = true\nbranches = true\nisolated = [0.36]\n"
+    folder, outcome = run_study(load(write(text)), tmp_path / "run")
+    assert list(outcome.further_results) == ["branch_1"]
+    branch = FrequencyCurve.load(folder.result.with_name("branch_1.nc"))
+    assert branch.provenance["method"]["periods"] == 2
+    report_run(folder)
+    assert "Branch 1 lies between" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            STOPPED + "branches = true\n",
+            "branches: they begin at markers; give stability = true and continuation = 'arc-length'",
+        ),
+        (
+            STOPPED.replace('between = ["0.34 Hz", "0.4 Hz"]\ncontinuation = "arc-length"', "frequencies = [0.35]")
+            + "isolated = [0.36]\n",
+            "isolated: the range of its branches is missing; give between = [begin, end]",
+        ),
+    ],
+)
+def test_branches_need_a_path(write, text, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        load(write(text))
+
+
 def test_damping_stands_beside_dampers(write):
     text = WHOLE.replace(
         "[model]\n", '[model]\n[model.structure]\ndamping = { kind = "Rayleigh", stiffness = "0.1*mu" }\n', 1

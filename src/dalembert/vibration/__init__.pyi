@@ -21,7 +21,6 @@ from dalembert.vibration.paths.deformation import Deformation as Deformation
 from dalembert.vibration.paths.deformation import deformation as deformation
 from dalembert.vibration.responses.branch import follow_branch as follow_branch
 from dalembert.vibration.responses.coexisting_motions import coexisting_motions as coexisting_motions
-from dalembert.vibration.responses.coexisting_motions import isolated_branches as isolated_branches
 from dalembert.vibration.responses.control import HeldAmplitude as HeldAmplitude
 from dalembert.vibration.responses.curve_family import CurveFamily as CurveFamily
 from dalembert.vibration.responses.curve_family import Envelope as Envelope
@@ -29,6 +28,7 @@ from dalembert.vibration.responses.followed_curve import FollowedPoint as Follow
 from dalembert.vibration.responses.forward_model import FrequencyResponse as FrequencyResponse
 from dalembert.vibration.responses.frequency_response import frequency_response as frequency_response
 from dalembert.vibration.responses.frequency_responses import frequency_responses as frequency_responses
+from dalembert.vibration.responses.isolated_branches import isolated_branches as isolated_branches
 from dalembert.vibration.responses.resonance import track_resonance as track_resonance
 from dalembert.vibration.responses.resonance_track import ResonanceTrack as ResonanceTrack
 from dalembert.vibration.responses.static_contact import StaticContact as StaticContact

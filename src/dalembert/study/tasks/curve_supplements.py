@@ -67,6 +67,7 @@ def single_curve_supplements(study: Study, curve: Any, system: Any) -> dict[str,
 def _branches(study: Study, curve: Any, system: Any) -> dict[str, Any]:
     """The branches that leave a curve, and those that it does not pass, by the names of their files."""
     from dalembert.vibration import follow_branch, isolated_branches
+    from dalembert.vibration.balance.arc_length import JOINED
     from dalembert.vibration.stability.bifurcations import BRANCH, DOUBLING
 
     table = study.table
@@ -76,7 +77,10 @@ def _branches(study: Study, curve: Any, system: Any) -> dict[str, Any]:
         for number, point in enumerate(places[:MOST_BRANCHES]):
             # A branch that joins its curve ends at another marker, from which it need not be followed again.
             frequency = curve.frequencies[point]
-            if not any(_joins(branch, frequency) for branch in followed):
+            joined = [
+                branch for branch in followed if JOINED in {entry.values.get("reason") for entry in branch.findings}
+            ]
+            if not any(abs(branch.frequencies[-1] / frequency - 1) < NEXT_TO for branch in joined):
                 with suppress(SolveError):  # the marker stays in the report
                     followed.append(
                         follow_branch(system, curve, number, stability=True, observe=curve.dofs, check=False)
@@ -87,12 +91,6 @@ def _branches(study: Study, curve: Any, system: Any) -> dict[str, Any]:
         alone = isolated_branches(system, curve, table.isolated, **options)[:MOST_BRANCHES]
     named = ((f"branch_{number}", branch) for number, branch in enumerate(followed, 1))
     return dict(named) | {f"isolated_{number}": branch for number, branch in enumerate(alone, 1)}
-
-
-def _joins(branch: Any, frequency: float) -> bool:
-    """Whether a branch ends on its curve next to a frequency."""
-    reasons = [finding.values.get("reason") for finding in branch.findings if finding.code == "end-not-reached"]
-    return "joined" in reasons and abs(branch.frequencies[-1] / frequency - 1) < NEXT_TO
 
 
 def family_supplements(study: Study, family: Any) -> dict[str, Any]:

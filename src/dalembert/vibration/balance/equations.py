@@ -340,17 +340,6 @@ def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool = F
     return RECEPTANCE
 
 
-def by_stiffness(method: HarmonicBalance, where: str) -> HarmonicBalance:
-    """Return the method with dynamic stiffnesses; InputError where receptances or several periods are asked for."""
-    require_one_period(method, where)
-    if method.solver == RECEPTANCE:
-        raise InputError(
-            f"{where}: the solver of the harmonic balance is 'receptance', which only curves and models of responses "
-            "take. Use solver='auto'"
-        )
-    return replace(method, solver=STIFFNESS)
-
-
 def require_one_period(method: HarmonicBalance, where: str) -> None:
     """Raise InputError for motions of several periods of the excitation."""
     if method.periods > 1:

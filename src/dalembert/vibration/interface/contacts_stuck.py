@@ -78,14 +78,7 @@ class ContactsStuck:
 
     def receptances(self, series: Fourier, loads: Loads, omega: float) -> Receptances:
         """Receptances at ω, and near it, with the harmonics of a series. ``loads``: forces in these."""
-        structure = self.structure(max(series.orders) * max(omega, self.highest))
-        if series.orders not in self._of_series:
-            self._of_series[series.orders] = Receptances(structure, series, loads, self.lowered.spin)
-        return self._of_series[series.orders]
-
-    def structure(self, highest: float) -> StuckStructure:
-        """The structure with the reference, whose modes reach above an angular frequency, rad/s."""
-        lowered, known = self.lowered, self.known
+        highest, lowered, known = max(series.orders) * max(omega, self.highest), self.lowered, self.known
         if self._structure is None and known.key == self._key:
             self._structure = known.structure
         if self._structure is None or not self._structure.is_fast_enough(highest):
@@ -94,7 +87,9 @@ class ContactsStuck:
             )
             self._of_series.clear()
             known.key, known.structure = self._key, self._structure
-        return self._structure
+        if series.orders not in self._of_series:
+            self._of_series[series.orders] = Receptances(self._structure, series, loads, lowered.spin)
+        return self._of_series[series.orders]
 
     @cached_property
     def _key(self) -> bytes:

@@ -91,22 +91,13 @@ class ReceptanceModes(ModeEquations):
         inertia = stuck.inertias[place] * (1 + spring)
         damping = stuck.damping.get("damping", np.zeros(len(stuck.inertias)))
         growth = (np.diag(damping) if damping.ndim == 2 else damping)[place] * (1 + spring) / inertia
-        coordinate = np.zeros((1, self.series().count))
-        coordinate[0, 0] = self._at_rest_coordinate
-        return Linear(
-            float(1 / np.sqrt(inertia)), float(growth), np.vstack([self.rest, coordinate]),
-            np.asarray(stuck.rows @ shape), shape,
-        )  # fmt: skip
-
-    @cached_property
-    def _at_rest_coordinate(self) -> float:
-        """wᵀ x at rest, so that the last row is in balance there, too."""
-        point = self._receptances.at(STILL)
-        padded = np.vstack([self.rest, np.zeros((1, self.series().count))])
-        deviation = self._balance(self.problem.method.first_samples).deviation(STILL, padded)
-        # η = η_lin - wᵀ G (λ - r u), with -κ η among the forces: (1 - κ/(1 + κ)) η = that of the others.
-        others = (point.linear - point.respond(deviation))[-1, 0]
-        return float(others * (1 + self.stuck.reference[-1])) if self.series().mean else 0.0
+        rest = np.vstack([self.rest, np.zeros((1, self.series().count))])
+        if self.series().mean:
+            # wᵀ x of the rest: η = η_lin - wᵀ G (λ - r u) of the others and of -κ η, so that η/(1 + κ) is that of them.
+            point = self._receptances.at(STILL)
+            forces = self._balance(self.problem.method.first_samples).deviation(STILL, rest)
+            rest[-1, 0] = (point.linear - point.respond(forces))[-1, 0] * (1 + spring)
+        return Linear(float(1 / np.sqrt(inertia)), float(growth), rest, np.asarray(stuck.rows @ shape), shape)
 
     def softer(self, part: float, rest: np.ndarray) -> None:
         """None: the linear mode of large interfaces is that of contacts that stick, which small motions have."""

@@ -27,7 +27,11 @@ def restarted(problem: Equations, curve: FrequencyCurve, point: int, where: str)
     by_receptances = curve.provenance["method"].get("solver") == RECEPTANCE
     if by_receptances != problem.by_receptances or "control" in curve.provenance:
         # Unknowns of another solver, or with a row more for a held amplitude.
-        unknowns = _in_unknowns_of(problem, curve.displacements[point], curve.forces[point])
+        balance, rows = problem.balance(problem.method.first_samples), curve.displacements[point]
+        if isinstance(balance, ReceptanceBalance) and len(rows) == problem.lowered.seen:
+            unknowns = balance.unknowns(rows, curve.forces[point])
+        elif len(rows) == problem.lowered.seen:
+            unknowns = rows[problem.lowered.coordinates.rows]
     if set(curve.orders) < set(orders):
         unknowns, samples = in_orders(unknowns, curve.orders, orders), max(samples, problem.method.first_samples)
     if unknowns.shape != problem.balance(samples).shape or not set(curve.orders) <= set(orders):
@@ -44,23 +48,11 @@ def measured_again(problem: Equations, before: Equations, solution: Solution) ->
     if not problem.lowered.added:
         return solution
     # Rows that elements see, then the one that was added.
-    rows, dof = (
-        before.balance(solution.samples).displacements(solution.unknowns),
-        problem.lowered.matrix[[-1]].nonzero()[1],
-    )
-    rows = np.vstack([rows, response_of(before, solution, dof)])
+    known, balance = solution.unknowns, before.balance(solution.samples)
+    rows = known if problem.by_receptances else balance.displacements(known)
+    rows = np.vstack([rows, response_of(before, solution, problem.lowered.matrix[[-1]].nonzero()[1])])
     unknowns = rows if problem.by_receptances else rows[problem.lowered.coordinates.rows]
     return problem.solve(unknowns, solution.omega, solution.samples)
-
-
-def _in_unknowns_of(problem: Equations, rows: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Return displacements and forces of all rows that elements see, (rows, coefficients), as unknowns."""
-    balance = problem.balance(problem.method.first_samples)
-    if len(rows) != problem.lowered.seen:
-        return rows
-    if isinstance(balance, ReceptanceBalance):
-        return balance.unknowns(rows, forces)
-    return rows[problem.lowered.coordinates.rows]
 
 
 def require_full_load(curve: FrequencyCurve, where: str) -> None:

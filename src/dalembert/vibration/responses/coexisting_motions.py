@@ -9,15 +9,13 @@ from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.threads import single_thread
 from dalembert.vibration.balance.arc_length import PathPoint, along, on_border
-from dalembert.vibration.balance.equations import Equations, equations, require_one_period
+from dalembert.vibration.balance.equations import Equations, require_one_period
 from dalembert.vibration.balance.first_guesses import Loading
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
 from dalembert.vibration.interface.condensed_structure import norm
 from dalembert.vibration.paths.curve import FrequencyCurve
-from dalembert.vibration.paths.curve_points import require_full_load
-from dalembert.vibration.responses.followed_curve import ARC_LENGTH, PosedCurve, conclude, follow
-from dalembert.vibration.responses.frequency_response import frequency_response
+from dalembert.vibration.responses.followed_curve import PosedCurve, conclude, follow
 from dalembert.vibration.system.requirements import positive_numbers, require_forces, require_viscous
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -96,86 +94,14 @@ def coexisting_motions(
         # Motions side by side are no neighbours on a path: none of them is a bifurcation of another.
         PathPoint(solution, returned=True)
         for omega in posed.omegas
-        for solution in _distinct(_passed(problem, float(omega), float(most)))
+        for solution in _passed(problem, float(omega), float(most))
     )
     return conclude(posed, follow(posed, problem, None, stability, check=False, points=points))
 
 
-@takes_checked("frequencies")
-@single_thread()
-def isolated_branches(
-    system: VibrationSystem,
-    curve: FrequencyCurve,
-    frequencies: np.ndarray | Sequence[float],
-    *,
-    most: float = 10.0,
-    stability: bool = False,
-    checkpoint: Checkpoint | None = None,
-) -> tuple[FrequencyCurve, ...]:
-    """Return the branches that pass motions at some frequencies and are no part of a curve.
-
-    Motions are those of :func:`coexisting_motions`. From each that neither the curve nor a branch before passes, the
-    branch is followed by arc length; an isolated one is closed.
-
-    Parameters
-    ----------
-    system : VibrationSystem
-        That of the curve.
-    curve : FrequencyCurve
-        Of which the branches have the harmonics, the range of frequencies and the observed degrees of freedom.
-    frequencies : array, shape (frequencies,)
-        Hz.
-    most, checkpoint
-        As of :func:`coexisting_motions`.
-    stability : bool
-        Whether that of the points of the branches is found.
-
-    Raises
-    ------
-    InputError
-        As of :func:`coexisting_motions`, and for a curve of a held amplitude.
-
-    Examples
-    --------
-    >>> import dalembert as da
-    >>> def damper(u, v, z, numbers, force):
-    ...     force[0] = -0.1 * v[0] ** 3 + 0.03 * v[0] ** 5
-    >>> system = da.VibrationSystem(da.lumped({"m": 1.0}, [("m", None, 1.0, 0.1)]))
-    >>> force, law = system.add(da.HarmonicForce("m", 0.0375)), system.add(da.UserLaw("d", "m", function=damper))
-    >>> curve = da.frequency_response(system, (0.12, 0.2), da.HarmonicBalance(1))
-    >>> (branch,) = isolated_branches(system, curve, [0.159])
-    >>> branch.findings[0].values["reason"], float(branch.amplitude("m").max().round(2))
-    ('closed', 1.47)
-    """
-    require_full_load(curve, "isolated_branches")
-    method = HarmonicBalance(**curve.provenance["method"])
-    options = {"observe": curve.dofs, "stability": stability, "checkpoint": checkpoint}
-    motions = coexisting_motions(system, frequencies, method, most=most, observe=curve.dofs, checkpoint=checkpoint)
-    window = float(np.nanmin(curve.frequencies)), float(np.nanmax(curve.frequencies))
-    problem, branches = equations(system, method, checkpoint), []
-    for point in range(len(motions)):
-        if not any(_passes(problem, known, motions, point) for known in (curve, *branches)):
-            options["start"] = motions, point
-            branches.append(frequency_response(system, window, method, continuation=ARC_LENGTH, check=False, **options))
-    return tuple(branches)
-
-
-def _passes(problem: Equations, curve: FrequencyCurve, motions: FrequencyCurve, point: int) -> bool:
-    """Whether a curve passes a motion at its frequency."""
-    place, motion = motions.frequencies[point], motions.unknowns[point]
-    ahead = curve.frequencies - place
-    for first in np.flatnonzero((ahead[:-1] * ahead[1:] <= 0) & curve.converged[:-1] & curve.converged[1:]):
-        span = curve.frequencies[first + 1] - curve.frequencies[first]
-        part = -ahead[first] / span if span else 0.0
-        guess = curve.unknowns[first] + part * (curve.unknowns[first + 1] - curve.unknowns[first])
-        solution = problem.solve(guess, problem.omega(place), int(motions.samples[point]))
-        if solution.converged and norm(solution.unknowns - motion) <= SAME * norm(motion):
-            return True
-    return False
-
-
 def _passed(problem: Equations, omega: float, most: float) -> Iterator[Solution]:
-    """Yield the motions at which the path over the force passes its value."""
+    """Yield the different motions at which the path over the force passes its value."""
+    known: list[Solution] = []
     samples = problem.method.first_samples
     loading = Loading(problem.balance(samples), problem.method, problem.at(omega))
     before: Solution | None = None
@@ -186,15 +112,9 @@ def _passed(problem: Equations, omega: float, most: float) -> Iterator[Solution]
             return
         if before is not None and (before.omega - 1) * (solution.omega - 1) <= 0:
             guess, _ = on_border(before, solution, 1.0)
-            yield problem.solve(guess, omega, samples)
+            motion = problem.solve(guess, omega, samples)
+            size = SAME * norm(motion.unknowns)
+            if motion.converged and all(norm(motion.unknowns - other.unknowns) > size for other in known):
+                known.append(motion)
+                yield motion
         before = solution
-
-
-def _distinct(solutions: Iterator[Solution]) -> Iterator[Solution]:
-    """Yield solutions that are converged and not among those before."""
-    known: list[Solution] = []
-    for solution in solutions:
-        size = norm(solution.unknowns)
-        if solution.converged and all(norm(solution.unknowns - other.unknowns) > SAME * size for other in known):
-            known.append(solution)
-            yield solution

@@ -46,11 +46,6 @@ class Modes(NamedTuple):
     stiffness: np.ndarray
     reference: np.ndarray
 
-    @property
-    def heavy(self) -> np.ndarray:
-        """Which modes have inertia, (modes,)."""
-        return self.inertias > LIGHT * self.inertias.max(initial=0.0)
-
 
 def active_rows(lowered: Lowered) -> np.ndarray:
     """Return the rows of all elements of a system, in ascending order."""
@@ -127,7 +122,8 @@ def _begin(modes: Modes, laws: Laws, rated: bool) -> np.ndarray:
 
 def _step(modes: Modes, laws: Laws, rated: bool, h: float) -> np.ndarray:
     """Matrix of a step of the states (η, η', z, Wᵀ d)."""
-    shapes, (rows, count), heavy = modes.shapes, modes.shapes.shape, modes.heavy
+    shapes, (rows, count) = modes.shapes, modes.shapes.shape
+    heavy = modes.inertias > LIGHT * modes.inertias.max(initial=0.0)
     internal = laws.keeping.shape[1] + rated * rows
     states = 3 * count + internal
     beyond, drag = laws.reaction - np.diag(modes.reference), np.zeros((rows, count))

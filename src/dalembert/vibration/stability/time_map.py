@@ -20,7 +20,7 @@ from dalembert.errors import InputError
 from dalembert.vibration.balance.uncondensed import Uncondensed
 from dalembert.vibration.interface.lowering import ELASTIC
 from dalembert.vibration.laws.friction_law import FRICTION, SEPARATED, STUCK
-from dalembert.vibration.stability.element_slopes import ElementSlopes, Laws, changes, element_slopes, gathered
+from dalembert.vibration.stability.element_slopes import Laws, changes, element_slopes, gathered
 
 MEMORY = 4_000_000
 """Numbers that the steps made at once may have."""
@@ -45,7 +45,11 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
     constraints = _held(system, linear, unknowns, omega)
     n, samples = len(mass), system.series.samples
     states = 2 * n + sum(part.laws.keeping.shape[1] for part in parts)
-    starts = _changes(parts, constraints)
+    # Between changes, friction in one direction repeats the same step.
+    begun = changes(parts, samples)
+    for values in (constraints.active, constraints.push):
+        begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
+    starts = np.flatnonzero(begun)
     lengths = np.diff(np.append(starts, samples))
     result, chunk = np.eye(states), max(1, MEMORY // (states * (n + len(constraints.rows))))
     begins = constraints.active & ~np.roll(constraints.active, 1, axis=0)
@@ -60,15 +64,6 @@ def monodromy(system: Uncondensed, linear: np.ndarray, unknowns: np.ndarray, ome
             # Steps between two changes of a law's slopes are equal: powers by squaring.
             result = np.linalg.matrix_power(step, int(length)) @ result
     return result
-
-
-def _changes(parts: list[ElementSlopes], constraints: Held) -> np.ndarray:
-    """Samples from which steps are others than before; between them friction in one direction repeats the same."""
-    samples = len(constraints.active)
-    begun = changes(parts, samples)
-    for values in (constraints.active, constraints.push):
-        begun |= np.any((values != np.roll(values, 1, axis=0)).reshape(samples, -1), axis=1)
-    return np.flatnonzero(begun)
 
 
 def _steps(

@@ -51,7 +51,7 @@ def found(study: Study, outcome: Outcome, row: dict[str, Any]) -> float:
         case "work_precision":
             runs: Any = getattr(outcome, "result").rows  # noqa: B009
             return next(run.error for run in runs if (run.method, run.settings) == (row["method"], row["settings"]))
-        case "frequency_response" if quantity in ("fold", "torus"):
+        case "frequency_response" if quantity in ("fold", "torus", "branch point"):
             marked: Any = getattr(outcome, "result")  # noqa: B009
             places = [marked.frequencies[point] for kind, point in marked.markers if kind == quantity]
             return float(places[row["number"]])

@@ -58,7 +58,7 @@ ACROSS_FOLD, MANY_ROWS = "fold", "rows"
 
 @dataclass(frozen=True)
 class PathPoint:
-    """A point of a curve. ``fold``: whether the curve turns back here, or where the turn is sharp, just before;
+    """A point of a curve. ``fold``: whether the curve has a fold here, or where the turn is sharp, just before;
     ``returned``: whether the curve comes back here to the frequencies that were asked for; ``stable``: 1, 0, or -1
     where it is not known; ``marker``: kind of the bifurcation that lies here, or nothing; ``unjudged``: why stability
     is not known: ACROSS_FOLD if a fold lies between the motion and its perturbations, or MANY_ROWS; ``end``: why the
@@ -198,7 +198,7 @@ class PathTangent:
         """Return the path behind a sharp turn.
 
         Its tangent is that where a step over the turn failed, or, with ``ahead``, that of places ahead: on the old side
-        of a kink the former is the old tangent. It is oriented by the sign of the determinant with the direction as a
+        of a kink the tangent where it failed is the old one. It is oriented by the sign of the determinant with the direction as a
         row, which a path keeps.
         """
         sign = _sign(self.known, self.direction, self.width, self.size)

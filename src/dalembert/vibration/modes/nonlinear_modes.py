@@ -64,8 +64,8 @@ def backbone(
     system : VibrationSystem
         Its harmonic forces are left out.
     amplitudes : array, shape (points,), or (first, last)
-        Of the first harmonic of ``dof``, m, positive. A tuple of two: the path between them by arc length, past places
-        where the amplitude turns back, with points as dense as it needs. An array: from each to the next.
+        Of the first harmonic of ``dof``, m, positive. A tuple of two: the path between them by arc length, past folds
+        of the amplitude, with points as dense as it needs. An array: from each to the next.
     mode : int
         Number among the linear modes at rest, where contacts under load stick, from 1 for the lowest frequency.
     method : HarmonicBalance, optional

@@ -54,7 +54,7 @@ class FrequencyCurve(ConvergedResult):
         Norm of the residual divided by that of the forces; by receptances, by that of the motion of the contacts.
     converged : array of bool, shape (points,)
     fold : array of bool, shape (points,)
-        Where the path turns back in frequency.
+        Where the path has a fold in frequency.
     samples : array of int, shape (points,)
         Of a period.
     sampling_errors : array, shape (points,)

@@ -97,7 +97,7 @@ def state_shares(states: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def marked(curve: "FrequencyCurve") -> dict[str, list[int]]:
-    """Points where the path turns back or changes its stability, by what they are."""
+    """Points where the path has a fold or changes its stability, by what they are."""
     points: dict[str, list[int]] = {}
     for kind, point in curve.markers:
         points.setdefault(kind, []).append(point)

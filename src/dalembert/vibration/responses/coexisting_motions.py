@@ -51,7 +51,7 @@ def coexisting_motions(
     method : HarmonicBalance, optional
         With a number of harmonics.
     most : float
-        Largest factor of the forces. A path that turns back above it is not followed.
+        Largest factor of the forces. A path with a fold above it is not followed.
     observe, stability, checkpoint
         As of :func:`frequency_response`.
 

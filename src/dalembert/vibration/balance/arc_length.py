@@ -198,8 +198,8 @@ class PathTangent:
         """Return the path behind a sharp turn.
 
         Its tangent is that where a step over the turn failed, or, with ``ahead``, that of places ahead: on the old side
-        of a kink the tangent where it failed is the old one. It is oriented by the sign of the determinant with the direction as a
-        row, which a path keeps.
+        of a kink the tangent where it failed is the old one. It is oriented by the sign of the determinant with the
+        direction as a row, which a path keeps.
         """
         sign = _sign(self.known, self.direction, self.width, self.size)
         if not sign:

@@ -77,8 +77,8 @@ class Rigid(Checked):
         N/m; it scales the prediction, and is no stiffness of the contact. The default is the stiffness of the structure
         behind the contact, with everything else held. Much larger values need more harmonics.
     prediction : {"displacement", "velocity"}
-        Predict stuck motion by displacements, with a slider that remembers, or by velocities, without history. Velocities
-        are more robust for contacts that carry mass.
+        Predict stuck motion by displacements, with a slider that remembers, or by velocities, without history.
+        Velocities are more robust for contacts that carry mass.
     gap : float
         Penetration at which the contact closes, m.
 

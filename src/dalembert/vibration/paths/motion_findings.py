@@ -1,4 +1,4 @@
-"""Findings on the motions of a curve: contacts that no motion closes, and rotors that are unstable without their contacts."""
+"""Findings on the motions of a curve: contacts that no motion closes, and rotors that are unstable without contacts."""
 
 import numpy as np
 from scipy.linalg import LinAlgError

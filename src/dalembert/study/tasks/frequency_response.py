@@ -107,6 +107,9 @@ class FrequencyResponseTable(StudyTable):
             wrong.append("branches: they begin at markers; give stability = true and continuation = 'arc-length'")
         if self.isolated is not None and self.between is None:
             wrong.append("isolated: the range of its branches is missing; give between = [begin, end]")
+        outside = [value for value in self.isolated or () if not min(ends) <= value <= max(ends)]
+        if outside and self.between is not None:
+            wrong.append(f"isolated: {outside[0]:g} Hz lies outside between; expected frequencies inside")
         if ends[0] == ends[1]:
             wrong.append(f"between: {ends[0]:g} Hz was given twice; expected two different frequencies")
         return wrong

@@ -40,7 +40,9 @@ def _cause(problem: Equations, solution: Solution) -> Finding | None:
     force = float(np.linalg.norm(along))
     if force > max(LEFT * solution.left, VERIFIED * solution.acting):
         balance = problem.balance(solution.samples)
-        moved = np.abs(balance.displacements((motions @ along)[:, None])[:, 0])
+        # By receptances the motions are those of the rows.
+        mean = (motions @ along)[:, None]
+        moved = np.abs(mean if problem.by_receptances else balance.displacements(mean))[:, 0]
         rows = np.flatnonzero(moved > MOVING * moved.max())[:NAMED]
         motion = listed([repr(balance.lowered.row_names[row]) for row in rows])
         message = (

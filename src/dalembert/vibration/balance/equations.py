@@ -328,7 +328,9 @@ def chosen_solver(lowered: Lowered, method: HarmonicBalance, stability: bool = F
         return method.solver
     orders = method.first().orders
     rows = sum(len(np.unique(block.rows)) for block in lowered.blocks)
-    if causes or rows * (2 * len(orders) - (orders[0] == 0)) <= LARGE:
+    rigid = any(block.kind != ELASTIC for block in lowered.blocks)
+    # All rigid contacts are active by receptances, which pays where the structure is large alone.
+    if causes or (rigid and lowered.structure.size <= DENSE) or rows * (2 * len(orders) - (orders[0] == 0)) <= LARGE:
         return STIFFNESS
     # All modes of a small structure make receptances exact, at the cost of a matrix of them where damping couples them.
     if lowered.structure.size <= DENSE and couples(lowered.structure):

@@ -38,7 +38,7 @@ def first_guesses(balance: AnyBalance, method: HarmonicBalance, point: Point) ->
     if isinstance(point, ReceptancePoint):
         # The motion while all contacts stick, that without contacts, then a path over the varying forces.
         assert isinstance(balance, ReceptanceBalance)  # that of the point
-        yield point.linear
+        yield balance.stuck(point)
         with suppress(np.linalg.LinAlgError):  # contacts alone hold a part
             yield balance.without_contacts(point)
         if method.halvings:

@@ -26,7 +26,7 @@ class Slopes(NamedTuple):
 
 @dataclass(frozen=True)
 class Elements:
-    """The elements of a system with elastic contacts, and a series. ``events``: as `Balance` takes it."""
+    """The elements of a system, whose contacts see displacements, and a series. ``events``: as `Balance` takes it."""
 
     lowered: Lowered
     series: Fourier

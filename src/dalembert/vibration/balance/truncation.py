@@ -7,6 +7,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from dalembert.findings import Finding
+from dalembert.structure.eigenmodes import real_part
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
@@ -228,7 +229,7 @@ def _padded(problem: Equations, method: HarmonicBalance, solution: Solution) -> 
 
 
 def _amplitudes(method: HarmonicBalance, solution: Solution) -> np.ndarray:
-    """Amplitudes of the retained coordinates, (q,): half of the way from the lowest to the highest position."""
+    """Amplitudes of the unknowns, (q,): half of the way from the lowest to the highest position."""
     return np.ptp(Fourier(method.orders, PHASES).synthesis @ solution.unknowns.T, axis=0) / 2
 
 
@@ -245,7 +246,7 @@ def _change(problem: Equations, solution: Solution, afresh: bool) -> tuple[float
     # The elements with rigid contacts of the velocity kind where these carry mass: it converges faster there.
     heavy = _heavy(problem, solution.omega)
     finer = problem.with_method(method)
-    if any(heavy):
+    if any(heavy) and not problem.by_receptances:
         blocks = tuple(
             replace(block, kind=VELOCITY) if own and block.memory else block
             for block, own in zip(problem.lowered.blocks, heavy, strict=True)
@@ -270,13 +271,11 @@ def _heavy(problem: Equations, omega: float) -> tuple[bool, ...]:
     lowered = problem.lowered
     if all(block.kind == ELASTIC for block in lowered.blocks):
         return (False,) * len(lowered.blocks)
-    stiffness, mass, *_ = problem.condensation.outer
+    structure, matrix = lowered.structure, lowered.matrix.tocsr()
     # m (H ω)² > k: at the highest harmonic the contact sees inertia, so that its force jumps where motion stops and
     # falls with 1/h.
-    inertia = np.diag(mass) * (problem.method.highest * omega) ** 2
-    place = {row: number for number, row in enumerate(lowered.coordinates.rows.tolist())}
-    rows = [[place[row] for row in block.rows.ravel().tolist() if row in place] for block in lowered.blocks]
+    inertia = real_part(structure.mass).diagonal() * (problem.method.highest * omega) ** 2
+    heavy = inertia > real_part(structure.stiffness).diagonal()
     return tuple(
-        block.kind != ELASTIC and bool(np.any(inertia[block_rows] > np.diag(stiffness)[block_rows]))
-        for block, block_rows in zip(lowered.blocks, rows, strict=True)
+        block.kind != ELASTIC and bool(np.any(heavy[matrix[block.rows.ravel()].indices])) for block in lowered.blocks
     )

@@ -54,6 +54,12 @@ class ContactsStuck:
         return self.at_rest[0]
 
     @cached_property
+    def of_contacts(self) -> np.ndarray:
+        """The reference without what springs and stops would add where contacts alone leave a part free."""
+        closed = self._stiffnesses([np.ones(len(block.rows), dtype=bool) for block in self.lowered.blocks])
+        return np.where(closed > 0, self.reference, 0.0)
+
+    @cached_property
     def at_rest(self) -> tuple[np.ndarray, np.ndarray]:
         """The reference, and displacements of all degrees of freedom (n,) under the static forces with it."""
         closed = self._stiffnesses([np.ones(len(block.rows), dtype=bool) for block in self.lowered.blocks])

@@ -91,7 +91,9 @@ class Lowered:
     def measuring(self, dof: int) -> "Lowered":
         """The same with a row of a degree of freedom, so that its displacement is known where those of elements are."""
         entries, column = np.diff(self.matrix.tocsr().indptr), self.matrix[:, [dof]].toarray()[:, 0]
-        known = np.flatnonzero((entries == 1) & (column == 1))
+        # Rows of rigid contacts may have another unknown than their displacement.
+        rigid = [block.rows.ravel() for block in self.blocks if block.kind != ELASTIC]
+        known = np.setdiff1d(np.flatnonzero((entries == 1) & (column == 1)), np.concatenate([[], *rigid]))
         if len(known):
             return replace(self, measured=int(known[0]))
         unit = csc_array(([1.0], ([0], [dof])), shape=(1, self.structure.size))

@@ -64,7 +64,6 @@ class ReceptancePoint:
 
     def respond(self, forces: np.ndarray, rows: np.ndarray | None = None, single: bool = False) -> np.ndarray:
         """G times forces on all rows (rows, coefficients), or on some. ``single``: compliance in single precision."""
-        # The mean has no inertia: its gain is zero.
         return self._static(forces, rows, single) + self._modal(self.gains, forces, rows)
 
     def respond_slope(self, forces: np.ndarray) -> np.ndarray:
@@ -82,7 +81,8 @@ class ReceptancePoint:
 
     def respond_transposed(self, forces: np.ndarray) -> np.ndarray:
         """The transpose of G, as a real matrix of coefficients, times forces (rows, coefficients)."""
-        # A phasor matrix G = Gᵀ has the conjugate as its real transpose: conj(G) f = conj(G conj(f)).
+        # A phasor matrix G = Gᵀ, that of a structure without a rotor that turns, has the conjugate as its real
+        # transpose: conj(G) f = conj(G conj(f)).
         turned = np.ones(self.series.count)
         turned[self.series.mean + 1 :: 2] = -1.0
         return turned * self.respond(turned * forces)

@@ -18,6 +18,8 @@ from dalembert.vibration.system.requirements import require_viscous
 
 STILL = 1.0
 """Angular frequency, rad/s, of the place of rest, which has no harmonics and does not depend on it."""
+COUPLED = 1e-9
+"""Stiffness of an element at rest between two of its displacements, as part of that of one, that is none."""
 HIGHER = 2.0
 """Frequency of a mode, as a multiple of that while contacts stick, up to which modes are computed."""
 
@@ -48,15 +50,29 @@ class ReceptanceModes(ModeEquations):
         require_viscous(lowered.structure, "nonlinear modes")
         # Springs and stops act in the linear mode as they do at rest.
         still = Elements(lowered, self.series(problem.method.first_samples), problem.method.events)
-        reference, count = problem.contacts_stuck.reference.copy(), self.series().count
+        reference, count = problem.contacts_stuck.of_contacts.copy(), self.series().count
         no_contacts = [np.zeros(len(block.rows), dtype=bool) for block in lowered.blocks]
         for rows, local in still.slopes(STILL, self.rest, no_contacts).laws:
-            reference[rows] += np.diagonal(local, axis1=1, axis2=2)[:, ::count]
-        slow = stuck_structure(lowered.structure, lowered.matrix, reference, 0.0)
+            # Of the first coefficient: all coefficients of a small motion have the same stiffness.
+            single = local.reshape(*rows.shape, count, rows.shape[1], count)[:, :, 0, :, 0]
+            diagonal = np.einsum("cii->ci", single)
+            if np.any(np.abs(single).sum(axis=2) > (1 + COUPLED) * np.abs(diagonal)):
+                raise InputError(
+                    "backbone: an element couples several displacements at rest, which linear modes by receptances do "
+                    "not contain. Use solver='stiffness'"
+                )
+            np.add.at(reference, rows, diagonal)
+        try:
+            slow = stuck_structure(lowered.structure, lowered.matrix, reference, 0.0)
+        except SolveError:
+            raise SolveError(
+                "backbone: a part moves freely at rest, where receptances have no linear mode of it. Clamp it, or use "
+                "solver='stiffness'"
+            ) from None
         modes = int(np.sum(slow.inertias > 0))
         if not 1 <= self.mode <= modes:
             raise InputError(
-                f"backbone: mode {self.mode} is asked for; expected 1 to {modes}, as many as the system has where its "
+                f"backbone: mode {self.mode} is asked for; expected 1 to {modes}, as many as are computed where "
                 "contacts stick"
             )
         highest = HIGHER * problem.method.orders[-1] / np.sqrt(slow.inertias[self.mode - 1])

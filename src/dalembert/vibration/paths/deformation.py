@@ -154,6 +154,8 @@ def _response(system: VibrationSystem, curve: FrequencyCurve, point: int) -> np.
     """Coefficients of all degrees of freedom, (size, coefficients), from the unknowns that the curve keeps."""
     method = HarmonicBalance(**curve.provenance["method"])
     lowered = replace(lower(system).real, periods=method.periods)
+    if "control" in curve.provenance:
+        lowered = lowered.measuring(lowered.structure.dofs.index(curve.provenance["control"]["dof"]))
     highest = 2 * np.pi * float(np.max(curve.frequencies)) / method.periods
     problem = Equations(lowered, method, _stuck=ContactsStuck(lowered, highest))
     balance, unknowns = problem.balance(int(curve.samples[point])), curve.unknowns[point]

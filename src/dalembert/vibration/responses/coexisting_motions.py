@@ -41,7 +41,7 @@ def coexisting_motions(
 
     At each frequency the varying forces are scaled from almost none up to ``most`` times their value, by arc length.
     Motions at the value itself are kept, also those of an isolated branch, to which no curve from outside comes. From
-    one of its motions, a curve by arc length is the whole of it.
+    one of its motions, a curve by arc length is the whole of a closed one.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def coexisting_motions(
     >>> motions.amplitude("m").round(2).tolist(), motions.stable.tolist()
     ([0.43, 2.23, 2.51], [1, 0, 1])
     """
-    places = positive_numbers(list(np.atleast_1d(frequencies)), "coexisting_motions", "frequencies", "Hz")
+    places = positive_numbers(np.atleast_1d(frequencies).tolist(), "coexisting_motions", "frequencies", "Hz")
     method = method or HarmonicBalance()
     require_one_period(method, "coexisting_motions")
     require_forces(system.forces, places, "coexisting_motions")

@@ -70,8 +70,8 @@ def frequency_response(
         those of ``method``.
     stability : bool
         Whether the stability of each point is found too, and the places where it changes: by Hill's method, or with
-        friction by the linearised motion over a period (see :func:`floquet_multipliers`). On paths between two
-        frequencies these places are separate points; with given frequencies the first one behind is marked.
+        friction or receptances by the linearised motion over a period (see :func:`floquet_multipliers`). On paths
+        between two frequencies these places are separate points; with given frequencies the first one behind is marked.
     control : HeldAmplitude, optional
         An amplitude that is held by a factor of the varying forces, in the ``load_factors`` of the curve. Such a curve
         is not checked with twice the harmonics.

@@ -5,8 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from dalembert.arguments import takes_checked
+from dalembert.errors import InputError
 from dalembert.forward import Checkpoint
 from dalembert.threads import single_thread
+from dalembert.vibration.balance.arc_length import CLOSED
 from dalembert.vibration.balance.equations import Equations, equations
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.interface.condensed_structure import norm
@@ -15,6 +17,7 @@ from dalembert.vibration.paths.curve_points import require_full_load
 from dalembert.vibration.responses.coexisting_motions import SAME, coexisting_motions
 from dalembert.vibration.responses.followed_curve import ARC_LENGTH
 from dalembert.vibration.responses.frequency_response import frequency_response
+from dalembert.vibration.system.requirements import positive_numbers
 from dalembert.vibration.system.system import VibrationSystem
 
 
@@ -32,7 +35,8 @@ def isolated_branches(
     """Return the branches that pass motions at some frequencies and are no part of a curve.
 
     Motions are those of :func:`coexisting_motions`. From each that neither the curve nor a branch before passes, the
-    branch is followed by arc length; an isolated one is closed.
+    branch is followed by arc length. An isolated one is closed; one that leaves the range has two parts, from the
+    motion to each side.
 
     Parameters
     ----------
@@ -41,7 +45,7 @@ def isolated_branches(
     curve : FrequencyCurve
         Of which the branches have the harmonics, the range of frequencies and the observed degrees of freedom.
     frequencies : array, shape (frequencies,)
-        Hz.
+        Hz, in the range of the curve.
     most, checkpoint
         As of :func:`coexisting_motions`.
     stability : bool
@@ -50,7 +54,8 @@ def isolated_branches(
     Raises
     ------
     InputError
-        As of :func:`coexisting_motions`, and for a curve of a held amplitude.
+        As of :func:`coexisting_motions`, for frequencies outside the range of the curve, and for a curve of a held
+        amplitude or of one frequency.
 
     Examples
     --------
@@ -67,13 +72,27 @@ def isolated_branches(
     require_full_load(curve, "isolated_branches")
     method = HarmonicBalance(**curve.provenance["method"])
     options = {"observe": curve.dofs, "stability": stability, "checkpoint": checkpoint}
-    motions = coexisting_motions(system, frequencies, method, most=most, observe=curve.dofs, checkpoint=checkpoint)
     window = float(np.nanmin(curve.frequencies)), float(np.nanmax(curve.frequencies))
-    problem, branches = equations(system, method, checkpoint), []
+    places = positive_numbers(np.atleast_1d(frequencies).tolist(), "isolated_branches", "frequencies", "Hz")
+    if places.min() < window[0] or places.max() > window[1] or window[0] == window[1]:
+        raise InputError(
+            f"isolated_branches: the frequencies reach from {places.min():.6g} to {places.max():.6g} Hz, and the curve "
+            f"from {window[0]:.6g} to {window[1]:.6g} Hz. Use frequencies inside a curve between two frequencies"
+        )
+    motions = coexisting_motions(system, frequencies, method, most=most, observe=curve.dofs, checkpoint=checkpoint)
+    problem = equations(system, method, checkpoint, highest=2 * np.pi * window[1] / method.periods)
+    branches: list[FrequencyCurve] = []
     for point in range(len(motions)):
-        if not any(_passes(problem, known, motions, point) for known in (curve, *branches)):
-            options["start"] = motions, point
-            branches.append(frequency_response(system, window, method, continuation=ARC_LENGTH, check=False, **options))
+        if any(_passes(problem, known, motions, point) for known in (curve, *branches)):
+            continue
+        for ends in (window, window[::-1]):
+            start = motions, point
+            branch = frequency_response(
+                system, ends, method, continuation=ARC_LENGTH, start=start, check=False, **options
+            )
+            branches.append(branch)
+            if any(finding.values.get("reason") == CLOSED for finding in branch.findings):
+                break
     return tuple(branches)
 
 

@@ -121,7 +121,8 @@ def track_resonance(
     Amplitude(kind, method.first().orders)  # an unknown kind is refused before a curve is followed
     if phase is not None and not np.isfinite(phase):
         raise InputError(f"track_resonance: phase is {phase}; expected a number in rad")
-    posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, phase, checkpoint)
+    highest = 2 * np.pi * float(np.nanmax(start.frequencies if isinstance(start, FrequencyCurve) else start))
+    posed = _PosedTrack(builder, parameter, unit, numbers, method, name, row, kind, phase, checkpoint, highest)
     curve, level, spent = _first_curve(posed, first, start)
     level, peaks, findings = _follow(posed, curve, level)
     places = [peak.solution.omega / (2 * np.pi) for peak, _ in peaks if peak is not None]
@@ -159,11 +160,12 @@ class _PosedTrack:
     phase: float | None
     checkpoint: Checkpoint | None
 
+    highest: float
     known: KnownStructures = field(default_factory=KnownStructures)
 
     def equations(self, value: float, level: HarmonicBalance) -> Equations:
         system = self.builder(**{self.parameter: value})
-        return equations(system, level, self.checkpoint, known=self.known, measured=self.row)
+        return equations(system, level, self.checkpoint, known=self.known, highest=self.highest, measured=self.row)
 
 
 def _first_curve(
@@ -191,7 +193,8 @@ def _follow(
         sizes = Amplitude(posed.kind, curve.orders).of(curve.harmonics(posed.dof))
         if not np.any(np.isfinite(sizes)):
             raise InputError("track_resonance: no point of the first curve was found; begin with another window")
-        plain = equations(posed.builder(**{posed.parameter: value}), level, posed.checkpoint, known=posed.known)
+        system, options = posed.builder(**{posed.parameter: value}), {"known": posed.known, "highest": posed.highest}
+        plain = equations(system, level, posed.checkpoint, **options)
         top = measured_again(first, plain, restarted(plain, curve, int(np.nanargmax(sizes)), "track_resonance"))
         size = Amplitude(posed.kind, level.orders)
         seeker = PeakSearch(size) if posed.phase is None else PhaseSearch(posed.row, size, posed.phase)

@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 
 from dalembert.arguments import takes_checked
-from dalembert.errors import require_known
+from dalembert.errors import InputError, require_known
 from dalembert.threads import single_thread
+from dalembert.vibration.balance.arc_length import MANY_ROWS
 from dalembert.vibration.balance.equations import equations
 from dalembert.vibration.balance.harmonic_balance import STIFFNESS, HarmonicBalance
+from dalembert.vibration.interface.lowering import ELASTIC, lower
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import require_full_load, restarted
+from dalembert.vibration.stability.modal_map import MOST_ROWS
 from dalembert.vibration.stability.stability import AUTO, HILL, TIME_MAP, exponents
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -30,7 +33,7 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
         Hill's method in frequency, which has the accuracy of the harmonics (twice as many as the curve's where a stop
         is touched) but does not know the memory of sliders, or
         trapezoidal steps of the linearised motion over a period, whose error falls with their square. Automatic: Hill's
-        method without contacts with friction, the linearised motion with such.
+        method without contacts with friction, the linearised motion with such, and with ``solver="receptance"``.
 
     Returns
     -------
@@ -40,8 +43,9 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     Raises
     ------
     InputError
-        For another way, a curve of another system, a structure that is too large for dense matrices, and, for the time
-        map, degrees of freedom that only together with others have a mass.
+        For another way, a curve of another system, a structure that is too large for dense matrices, more contacts that
+        slip than the map by receptances takes, and, for the time map, degrees of freedom that only together with others
+        have a mass.
 
     Examples
     --------
@@ -58,9 +62,15 @@ def floquet_multipliers(system: VibrationSystem, curve: FrequencyCurve, point: i
     require_known("way", way, (AUTO, HILL, TIME_MAP), "floquet_multipliers")
     require_full_load(curve, "floquet_multipliers")
     method = HarmonicBalance(**curve.provenance["method"])
-    if way == HILL:
+    if way == HILL or any(block.kind != ELASTIC for block in lower(system).blocks):
         method = replace(method, solver=STIFFNESS)
     problem = equations(system, method, stability=way != HILL)
     begin = restarted(problem, curve, point, "floquet_multipliers")
-    factors = np.exp(2 * np.pi * exponents(problem, begin, way).values)
+    known = exponents(problem, begin, way)
+    if known.unjudged == MANY_ROWS:
+        raise InputError(
+            f"floquet_multipliers: more than {MOST_ROWS} displacements of contacts slip or open at this point. Use "
+            "fewer contacts, or compare the motion with integration in time"
+        )
+    factors = np.exp(2 * np.pi * known.values)
     return factors[np.argsort(-np.abs(factors), kind="stable")]

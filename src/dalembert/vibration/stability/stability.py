@@ -84,9 +84,10 @@ def exponents(problem: Equations, solution: Solution, way: str = AUTO) -> Expone
         # Hill's matrix lacks the memory of sliders: multipliers of 2.7 for a motion whose largest is 0.94 (three masses
         # with sliders, cubic springs and a stop, at 1.63 rad/s).
         of_map = _by_modes if problem.by_receptances else _by_time_map
-        values = _held(problem, problem.once(TIME_MAP, solution, lambda: of_map(problem, solution)))
-        if not values.size and problem.nonlinear:
-            return Exponents(values, unjudged=MANY_ROWS)
+        values = problem.once(TIME_MAP, solution, lambda: of_map(problem, solution))
+        if np.isnan(values).any():
+            return Exponents(np.zeros(0), unjudged=MANY_ROWS)
+        values = _held(problem, values)
         return _on_side(problem, solution, values, 0.0)
     values = _held(problem, problem.once(HILL, solution, lambda: hill(problem, solution)))
     stops = [block.rows.ravel() for block in problem.lowered.laws if block.element.switches]
@@ -191,14 +192,14 @@ def _by_time_map(problem: Equations, solution: Solution) -> np.ndarray:
 
 
 def _by_modes(problem: Equations, solution: Solution) -> np.ndarray:
-    """Return the same by receptances; none where the active elements have too many rows."""
+    """Return the same by receptances; NaN where the active elements have too many rows."""
     require_viscous(problem.lowered.structure, "stability and Floquet multipliers")
     balance, point = problem.balance(solution.samples), solution.point
     assert isinstance(balance, ReceptanceBalance)
     assert isinstance(point, ReceptancePoint)
     lowered = balance.active(point, solution.unknowns)
     if len(active_rows(lowered)) > MOST_ROWS:
-        return np.zeros(0, dtype=complex)
+        return np.full(1, complex(np.nan))
     series = Fourier(problem.method.orders, max(FEWEST, solution.samples))
     return _exponents(modal_map(lowered, point, series, solution.unknowns, lowered.spin(solution.omega)[0]))
 

@@ -304,6 +304,7 @@ def test_branches_are_kept_and_drawn_with_their_curve(write, tmp_path):
             + "isolated = [0.36]\n",
             "isolated: the range of its branches is missing; give between = [begin, end]",
         ),
+        (STOPPED + "isolated = [0.5]\n", "isolated: 0.5 Hz lies outside between; expected frequencies inside"),
     ],
 )
 def test_branches_need_a_path(write, text, message):

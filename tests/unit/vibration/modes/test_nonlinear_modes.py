@@ -11,11 +11,13 @@ from dalembert.forward import Checkpoint
 from dalembert.structure import lumped
 from dalembert.vibration import (
     Backbone,
+    CubicSpring,
     ElasticSlider,
     FrictionContact,
     Gap,
     HarmonicBalance,
     StaticForce,
+    UserElement,
     VibrationSystem,
     backbone,
 )
@@ -88,6 +90,20 @@ def test_a_mode_by_receptances_is_that_by_dynamic_stiffnesses(posed, direct: int
     ends = [np.array([path.frequencies[-1], path.damping[-1], path.energies[-1]]) for path in paths]
     np.testing.assert_allclose(ends[0], ends[1], rtol=1e-8)
     np.testing.assert_allclose(paths[0].shapes[-1], paths[1].shapes[-1], rtol=0, atol=1e-8)
+
+
+def test_a_part_that_only_a_nonlinear_spring_holds_has_no_mode_by_receptances() -> None:
+    system = VibrationSystem(lumped({"a": 1.0, "b": 1.0}, [("a", None, 1.0, 0.02)]))
+    system.add(CubicSpring("e", "a", "b", stiffness=1.0))
+    with pytest.raises(SolveError, match=r"backbone: a part moves freely at rest.*solver='stiffness'"):
+        backbone(system, np.array([0.1]), 1, replace(METHOD, solver="receptance"))
+
+
+def test_an_element_that_couples_displacements_is_refused_by_receptances() -> None:
+    system = VibrationSystem(lumped({"a": 1.0, "b": 1.0}, [("a", None, 1.0, 0.02), ("b", None, 2.0, 0.02)]))
+    system.add(UserElement("user", ["a.x", "b.x"], lambda u: np.stack([0.5 * u[1], 0.5 * u[0]])))
+    with pytest.raises(InputError, match="couples several displacements at rest"):
+        backbone(system, np.array([0.1]), 1, replace(METHOD, solver="receptance"))
 
 
 def test_a_mode_about_a_stop_that_a_static_force_closes_by_receptances() -> None:

@@ -5,7 +5,13 @@ import pytest
 
 import dalembert as da
 from dalembert.errors import InputError
-from dalembert.vibration import HarmonicBalance, VibrationSystem, coexisting_motions, frequency_response
+from dalembert.vibration import (
+    HarmonicBalance,
+    VibrationSystem,
+    coexisting_motions,
+    frequency_response,
+    isolated_branches,
+)
 from support import says
 
 ONE = HarmonicBalance(1)
@@ -68,6 +74,20 @@ def test_an_isolated_branch_is_closed_and_ends_where_the_closed_form_does():
         assert len(branch) < 100
         found = 2 * np.pi * np.array([branch.frequencies.min(), branch.frequencies.max()])
         np.testing.assert_allclose(found, [end_of_the_branch(0.9), end_of_the_branch(1.1)], rtol=1e-9)
+
+
+def test_branches_that_a_curve_does_not_pass():
+    window = 0.7 / (2 * np.pi), 1.3 / (2 * np.pi)
+    curve = frequency_response(damped(), window, ONE, check=False)
+    (branch,) = isolated_branches(damped(), curve, [0.95 / (2 * np.pi), 1 / (2 * np.pi)])
+    assert [finding.values["reason"] for finding in branch.findings] == ["closed"]
+    with pytest.raises(InputError, match="Use frequencies inside a curve between two frequencies"):
+        isolated_branches(damped(), curve, [0.3])
+    # A range that cuts the branch: both parts, from the motion to each side.
+    cut = frequency_response(damped(), (0.7 / (2 * np.pi), 1 / (2 * np.pi)), ONE, check=False)
+    parts = isolated_branches(damped(), cut, [0.998 / (2 * np.pi)])
+    assert min(part.frequencies.min() for part in parts) == pytest.approx(end_of_the_branch(0.9) / (2 * np.pi))
+    assert max(part.frequencies.max() for part in parts) == pytest.approx(1 / (2 * np.pi))
 
 
 @pytest.mark.parametrize("solver", ["stiffness", "receptance"])

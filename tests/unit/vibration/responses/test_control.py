@@ -7,6 +7,7 @@ import pytest
 
 import dalembert as da
 from dalembert.errors import InputError
+from dalembert.structure import Material, box, solid
 from dalembert.vibration import HarmonicBalance, HeldAmplitude, VibrationSystem, frequency_response, track_resonance
 from support import says
 
@@ -39,6 +40,39 @@ def test_a_held_amplitude_is_that_of_the_force_it_needs(friction, solver):
         forced = pair(float(curve.load_factors[point]), friction)
         again = frequency_response(forced, frequencies[[point]], METHOD, start=(curve, point))
         np.testing.assert_allclose(again.amplitude("b", "harmonic 1"), 0.4, rtol=1e-8)
+
+
+def on_the_ground(level: float = 1.0) -> VibrationSystem:
+    """Two masses, the second one on a rigid contact."""
+    system = VibrationSystem(da.lumped({"a": 1.0, "b": 1.0}, [("a", None, 1.0, 0.05), ("a", "b", 1.0, 0.05)]))
+    system.add(da.HarmonicForce("a", level))
+    system.add(da.FrictionContact("foot", "b", friction=0.3, preload=0.5, law=da.Rigid()))
+    return system
+
+
+def test_a_rigid_contact_moves_by_its_displacement_and_not_by_what_its_law_predicts():
+    method, held = HarmonicBalance(7, solver="receptance"), HeldAmplitude("b", 0.8)
+    curve = frequency_response(on_the_ground(), np.array([0.12, 0.15]), method, control=held)
+    np.testing.assert_allclose(curve.amplitude("b", "harmonic 1"), 0.8, rtol=1e-9)
+    tracks = [
+        track_resonance(
+            on_the_ground, "level", [1.0, 1.2], (0.05, 0.2), replace(method, solver=solver), dof="b", kind="harmonic 1"
+        )
+        for solver in ("stiffness", "receptance")
+    ]
+    np.testing.assert_allclose(tracks[0].amplitudes, tracks[1].amplitudes, rtol=1e-5)
+
+
+def test_the_motion_of_a_held_curve_is_that_of_all_degrees_of_freedom():
+    plate = solid(box((1.0, 1.0, 0.2), (1, 1, 1)), Material(1e4, 0.3, 100.0))
+    fixed = plate.fixed("left").with_damping(da.Rayleigh(mass=1.0))
+    system = VibrationSystem(fixed)
+    end = next(name for name in fixed.dofs.names if name.endswith(".z")).rpartition(".")[0]
+    system.add(da.HarmonicForce(f"{end}.z", 1.0))
+    system.add(da.CubicSpring("k", f"{end}.x", stiffness=1.0))
+    held = HeldAmplitude(f"{end}.z", 0.01)
+    curve = frequency_response(system, np.array([0.5]), METHOD, control=held)
+    assert da.deformation(system, curve).coefficients.shape[0] > 0
 
 
 def test_the_amplitude_of_a_retained_degree_of_freedom_along_a_path(tmp_path):

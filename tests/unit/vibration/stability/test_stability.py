@@ -16,6 +16,7 @@ from dalembert.vibration import (
     FrictionContact,
     HarmonicBalance,
     HarmonicForce,
+    Rigid,
     StaticForce,
     UserLaw,
     VibrationSystem,
@@ -90,12 +91,35 @@ def test_multipliers_by_receptances_are_those_by_dynamic_stiffnesses(posed, unst
         np.testing.assert_allclose(np.abs(first[:6]), np.abs(other[:6]), rtol=error)
 
 
+def test_rigid_contacts_take_part_in_the_multipliers_of_a_curve_by_receptances() -> None:
+    system = VibrationSystem(lumped({"a": 1.0, "b": 1.0}, [("a", None, 1.0, 0.05), ("a", "b", 1.0, 0.05)]))
+    system.add(HarmonicForce("a", 1.0))
+    system.add(FrictionContact("foot", "b", friction=0.3, preload=0.5, law=Rigid()))
+    first, other = (
+        floquet_multipliers(
+            system, frequency_response(system, np.array([0.13]), HarmonicBalance(5, solver=solver), check=False), 0
+        )
+        for solver in ("stiffness", "receptance")
+    )
+    np.testing.assert_allclose(np.abs(first), np.abs(other), rtol=1e-6)
+
+
+def test_a_motion_whose_disturbances_are_forgotten_is_stable() -> None:
+    system = VibrationSystem(lumped({"m": 1.0}, [("m", None, 1.0, 0.3)]))
+    system.add(HarmonicForce("m", 1.0))
+    system.add(FrictionContact("slider", "m", friction=0.5, preload=1.0, law=ElasticSlider(0.8)))
+    curve = frequency_response(system, np.array([0.002]), HarmonicBalance(3), stability=True, check=False)
+    assert curve.stable.tolist() == [1]
+
+
 def test_motions_of_too_many_contacts_have_no_label(monkeypatch) -> None:
     monkeypatch.setattr("dalembert.vibration.stability.stability.MOST_ROWS", 1)
     monkeypatch.setattr("dalembert.vibration.stability.bifurcations.MOST_ROWS", 1)
     method = HarmonicBalance(5, solver="receptance")
     curve = frequency_response(springs_and_slider(), np.array([0.13, 0.2]), method, stability=True, check=False)
     assert curve.stable.tolist() == [-1, -1]
+    with pytest.raises(InputError, match=r"floquet_multipliers: more than \d+ displacements of contacts slip or open"):
+        floquet_multipliers(springs_and_slider(), curve, 0)
     finding = next(finding for finding in curve.findings if finding.code == "stability-many-contacts")
     assert finding.message == (
         "The stability of 2 points between 0.13 and 0.2 Hz is not known: more than 1 displacements of contacts slip or "

@@ -65,7 +65,11 @@ def frequency_curve(
         _path(figure, curve, dof, factor * size, colour_of(place))
     most = max(sizes, key=lambda dof: float(np.nanmax(sizes[dof], initial=0.0)))
     for place, (name, branch) in enumerate((branches or {}).items(), len(sizes)):
-        _path(figure, branch, name, factor * branch.amplitude(most, kind), colour_of(place))
+        # Behind a period doubling, the harmonics of the force are every second one of the branch.
+        periods = [each.provenance["method"].get("periods", 1) for each in (branch, curve)]
+        order = kind.removeprefix("harmonic ")
+        same = f"harmonic {int(order) * periods[0] // periods[1]}" if order != kind else kind
+        _path(figure, branch, name, factor * branch.amplitude(most, same), colour_of(place))
     for event, points in marked(curve).items():
         x = np.tile(curve.frequencies[points], len(sizes))
         y = np.concatenate([factor * size[points] for size in sizes.values()])

@@ -96,8 +96,7 @@ def campbell(
         if on_speed:
             on_speed(float(given[row]), found[row])
     kept = [found[row] for row in range(len(given))]
-    roots, whirl = followed(
-        [SpeedModes(own.speed, own.roots, own.shapes, own.whirl, own.growth) for own in kept], count
-    )
-    speed, growth = (np.array([getattr(own, name) for own in kept]) for name in ("speed", "growth"))
+    at_speeds = [SpeedModes(each.speed, each.roots, each.shapes, each.whirl, each.growth) for each in kept]
+    roots, whirl = followed(at_speeds, count)
+    speed, growth = (np.array([getattr(each, name) for each in kept]) for name in ("speed", "growth"))
     return Campbell(parameter, unit, np.array(given, dtype=float), speed, roots, whirl, growth, frame or FIXED)

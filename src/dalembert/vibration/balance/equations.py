@@ -16,6 +16,7 @@ from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, REC
 from dalembert.vibration.balance.newton import AnyBalance, Constraint, Point, Solution, correct, placed
 from dalembert.vibration.balance.preparation import prepare_balance
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
+from dalembert.vibration.balance.symmetry import require_symmetry
 from dalembert.vibration.fourier import Fourier
 from dalembert.vibration.interface.condensation import DENSE, Condensation
 from dalembert.vibration.interface.condensed_structure import norm
@@ -24,13 +25,7 @@ from dalembert.vibration.interface.loads import Loads
 from dalembert.vibration.interface.lowering import ELASTIC, Lowered, lower
 from dalembert.vibration.interface.modal_damping import couples
 from dalembert.vibration.interface.receptances import ReceptancePoint
-from dalembert.vibration.laws.law_block import LawBlock
-from dalembert.vibration.laws.sampled_sums import forces_from_rest
-from dalembert.vibration.system.harmonic_force import StaticForce
 from dalembert.vibration.system.system import VibrationSystem
-
-SIZES = 10.0 ** np.arange(-9, 7, 3)
-"""Sizes of the motions, m, at which laws are compared with their opposites."""
 
 
 @dataclass(frozen=True)
@@ -295,7 +290,7 @@ def equations(
     """
     lowered = replace(lower(system).real, periods=method.periods)
     if method.odd_only:
-        _require_symmetry(lowered)
+        require_symmetry(lowered)
     if measured is not None:
         lowered = lowered.measuring(measured)
     prepare_balance(lowered, method.events, residuals=residuals, stability=stability, derivatives=derivatives)
@@ -353,42 +348,3 @@ def require_one_period(method: HarmonicBalance, where: str) -> None:
 
 RESAMPLED = (1.25, 2.0, 1.5, 4.0)
 """Other numbers of samples, as parts of the first one, where Newton's method alternates between the sides of kinks."""
-
-
-def _require_symmetry(lowered: Lowered) -> None:
-    lopsided = [f"the static force on {force.dof!r}" for force in lowered.forces if isinstance(force, StaticForce)]
-    lopsided += [f"the normal direction of {lowered.contacts[b.contacts[0]]!r}" for b in lowered.blocks if b.normal]
-    lopsided += [
-        f"the element {name!r}"
-        for block in lowered.laws
-        for element, name in enumerate(block.names)
-        if not _odd(partial(_force, block, element), block.rows.shape[1])
-    ]
-    lopsided += [
-        f"the element {element.name!r}" for rows, element in lowered.functions if not _odd(element.function, len(rows))
-    ]
-    if lopsided:
-        raise InputError(
-            f"HarmonicBalance: odd_only=True, but {lopsided[0]} causes a mean or even harmonics; use odd_only=False"
-        )
-
-
-def _force(block: LawBlock, element: int, u: np.ndarray) -> np.ndarray:
-    """Forces of an element of a block over motions (columns, samples), from rest."""
-    single, motion = replace(block, numbers=block.numbers[[element]]), u[None].astype(complex)
-    return np.real(forces_from_rest(single, motion, 0 * motion))[0]
-
-
-@np.errstate(all="ignore")
-def _odd(force: Callable[[np.ndarray], np.ndarray], count: int) -> bool:
-    """Whether opposite displacements have opposite forces, at displacements of many sizes."""
-    for size in SIZES:
-        u = size * np.random.default_rng(0).normal(size=(count, 16))
-        # λ(-u) = -λ(u) is what motions of odd harmonics alone need. Random motions of many sizes find a mean or even
-        # harmonics at gaps and
-        # limits from 1e-9 to 1e6 m.
-        forces, back = force(u), force(-u)
-        scale = np.abs(forces).max(initial=0.0)
-        if np.isfinite(scale) and not np.allclose(forces, -back, rtol=1e-9, atol=1e-12 * scale):
-            return False
-    return True

@@ -85,7 +85,7 @@ def isolated_branches(
     for point in range(len(motions)):
         if any(_passes(problem, known, motions, point) for known in (curve, *branches)):
             continue
-        for ends in (window, window[::-1]):
+        for ends in (window, (window[1], window[0])):
             start = motions, point
             branch = frequency_response(
                 system, ends, method, continuation=ARC_LENGTH, start=start, check=False, **options

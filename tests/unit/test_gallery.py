@@ -22,7 +22,7 @@ def test_each_study_has_a_page_with_its_picture_and_its_files(written):
     page = (written / "duffing.gallery").read_text()
     assert page.startswith("# Duffing oscillator: past the folds\n\n![Drawing of the model](pictures/duffing.svg)\n")
     assert re.findall(r"<code>([\w.-]+)</code>", page) == [
-        "backbone.toml", "fold.toml", "levels.toml", "model.toml", "track.toml"
+        "backbone.toml", "branches.toml", "fold.toml", "levels.toml", "model.toml", "track.toml"
     ]  # fmt: skip
     assert (STUDIES / "duffing" / "fold.toml").read_text().strip() in page
     for picture in written.glob("pictures/*.svg"):

@@ -50,9 +50,9 @@ def test_the_nonlinear_mode_of_a_lap_joint_is_its_phase_resonance(record_evidenc
     """A force a quarter of a period ahead of the tip does the work of the mode's negative damping."""
     mesh, between = bars(4, 2)
     end, method = f"{tip(mesh)}.z", HarmonicBalance(3, samples=256, solver="receptance")
-    mode = backbone(lap_joint(mesh, mesh, between, 4.0, 10_000.0), (1e-5, 4e-3), 1, method, dof=end)
+    mode = backbone(lap_joint(mesh, mesh, between, 4.0, 10_000.0), (1e-4, 2e-2), 1, method, dof=end)
     assert mode.converged.all()
-    assert mode.damping[-1] > 1.2 * mode.damping[0]  # some pairs slip
+    assert mode.damping.max() > 1.2 * mode.damping[0]  # some pairs slip
 
     def joint(force: float) -> VibrationSystem:
         return lap_joint(mesh, mesh, between, force, 10_000.0)
@@ -61,7 +61,7 @@ def test_the_nonlinear_mode_of_a_lap_joint_is_its_phase_resonance(record_evidenc
     track = track_resonance(joint, "force", [4.0], (70.8, 72.4), method, unit="N", **options)
     amplitude = float(track.amplitudes[0])
     for what, unit, expected, values, tolerance in (
-        ("frequency", "Hz", track.frequencies[0], mode.frequencies, 1e-5),
+        ("frequency", "Hz", track.frequencies[0], mode.frequencies, 1e-4),
         ("force", "N", 4.0, mode.forces, 1e-2),
     ):
         record_evidence(

@@ -16,8 +16,8 @@ CRITICAL = np.sqrt(STIFFNESS / MASS)  # rad/s
 JEFFCOTT = "Jeffcott rotor: (k - m Ω² + i Ω c) z = m e Ω²"
 SOURCES = {
     "whirl": "I (θ'' + ...) with M_x = I_p Ω θ_y', M_y = -I_p Ω θ_x': two complex equations",
-    "threshold": "Ω = ω (1 + c_outer / c_inner), by the sign of the growth of z'' m + (c_o + c_i) z' + (k - i Ω c_i) z = 0",
-    "rub": "(k - m Ω² + i Ω c) z + k_s (1 - g/|z|) (1 + i μ) z = m e Ω², solved for |z|",
+    "threshold": "Ω = ω (1 + c_outer/c_inner), where m z'' + (c_o+c_i) z' + (k-iΩc_i) z = 0 begins to grow",
+    "rub": "(k-mΩ²+iΩc)z + k_s(1-g/|z|)(1+iμ)z = meΩ², for |z|",
 }
 
 

@@ -13,7 +13,7 @@ CONTACT = (3 * PRESS * RADIUS / (4 * MODULUS)) ** (1 / 3)  # m
 PRESSURE = 3 * PRESS / (2 * np.pi * CONTACT**2)  # Pa
 SIDE, COUNT = 2.5 * CONTACT, 24
 HERTZ = "Hertz: a³ = 3 P R / (4 E), p0 = 3 P / (2 π a²)"
-MINDLIN = "Cattaneo and Mindlin: c³ = a³ (1 - Q / (μ P)), δ = 3 μ P (2 - ν) / (16 G a) (1 - (1 - Q / (μ P))^(2/3))"
+MINDLIN = "Cattaneo, Mindlin: c³/a³ = 1-Q/(μP), δ = 3μP(2-ν)/(16Ga)·(1-(1-Q/(μP))^(2/3))"
 
 
 def over_a_square(x: np.ndarray, y: np.ndarray, half: float) -> np.ndarray:

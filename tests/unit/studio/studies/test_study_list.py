@@ -39,7 +39,7 @@ def test_folders_have_titles_descriptions_and_their_studies(workspace):
     assert examples.title == "Duffing oscillator: past the folds"
     assert examples.description.startswith("A mass of 1 kg on a spring of 1 N/m that hardens")
     assert [entry.name for entry in examples.entries] == [
-        "duffing/backbone", "duffing/fold", "duffing/levels", "duffing/track"
+        "duffing/backbone", "duffing/branches", "duffing/fold", "duffing/levels", "duffing/track"
     ]  # fmt: skip
 
 
@@ -65,7 +65,7 @@ def test_the_newest_run_of_a_study_is_its_last(workspace):
     assert last_runs(workspace.runs_folder)[(mine, "study")] == LastRun("new", "finished", "2026-01-01 10:00:00")
     examples, own = study_folders(workspace)
     assert own.entries[0].last.name == "new"
-    assert [entry.last and entry.last.name for entry in examples.entries] == [None, "other", None, None]
+    assert [entry.last and entry.last.name for entry in examples.entries] == [None, None, "other", None, None]
 
 
 def test_a_study_with_mistakes_and_damaged_runs_are_listed(workspace):

@@ -29,7 +29,8 @@ CLOSED, JOINED = "closed", "joined"
 AWAY = 2.0
 """Distance from its first point, in steps, from which on a path may come back to it."""
 FAR = 5.0
-"""Distance of the point after a step, in steps, from which on it is one of another path."""
+"""Distance of the point after a step, in steps, from which on it is one of another path, if it is also farther than
+the size of the motion. Behind a corner a path may be farther than some of the short steps there."""
 STILL = 1e-3
 """Motion, as part of what the forces would cause on the stiffness of the structure alone, that counts as none."""
 MOST_POINTS = 20_000
@@ -187,7 +188,7 @@ class PathTangent:
         plane = CrossingPlane(self.direction, guess, omega, self.size, self.width)
         solution = equations.solve(guess, omega, self.known.samples, plane)
         # The plane may cross another path far away.
-        if not solution.converged or self.distance(solution) > FAR * length:
+        if not solution.converged or self.distance(solution) > max(FAR * length, 1.0):
             return solution, None
         try:
             return solution, direction_at(solution, self.direction, self.width, self.size)

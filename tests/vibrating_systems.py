@@ -84,3 +84,22 @@ def heavy_foot(law: ElasticSlider | Rigid) -> VibrationSystem:
     system.add(HarmonicForce("m1", 1.0))
     system.add(FrictionContact("slider", "m2", friction=0.5, preload=1.0, law=law))
     return system
+
+
+def pressed_blocks() -> VibrationSystem:
+    """Three masses on two pressed contacts with friction in two directions, at which a motion is unstable."""
+    axes = "xyz"
+    masses = {f"{node}.{axis}": 1.0 for node in "abc" for axis in axes}
+    springs = [
+        (f"{node}.{axis}", end if end is None else f"{end}.{axis}", 1.0 + 0.1 * place + 0.2 * row, 0.03)
+        for place, (node, end) in enumerate((("a", None), ("b", "a"), ("c", "b")))
+        for row, axis in enumerate(axes)
+    ]
+    system = VibrationSystem(lumped(masses, springs))
+    for axis, force in zip(axes, (0.6, 0.3, 0.3), strict=True):
+        system.add(HarmonicForce(f"c.{axis}", force))
+    law = ElasticSlider(2.0, normal_stiffness=3.0)
+    for node in "ab":
+        sides = {"tangential": ("x", "y"), "normal": "z"}
+        system.add(FrictionContact(f"at {node}", node, **sides, friction=0.4, preload=0.5, law=law))
+    return system

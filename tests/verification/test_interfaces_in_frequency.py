@@ -4,12 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from dalembert.structure import lumped
 from dalembert.vibration import (
-    ElasticSlider,
-    FrictionContact,
     HarmonicBalance,
-    HarmonicForce,
     VibrationSystem,
     backbone,
     deformation,
@@ -18,6 +14,7 @@ from dalembert.vibration import (
     track_resonance,
 )
 from lap_joint import bars, lap_joint, tip
+from vibrating_systems import pressed_blocks
 
 TOPIC = "Interfaces of many contacts"
 SOURCE = "dynamic stiffness of all degrees of freedom, factorised at each frequency"
@@ -73,19 +70,7 @@ def test_the_nonlinear_mode_of_a_lap_joint_is_its_phase_resonance(record_evidenc
 
 
 def test_the_multipliers_of_a_block_on_pressed_contacts_are_those_of_all_its_coordinates(record_evidence):
-    axes, chain = "xyz", (("a", None), ("b", "a"), ("c", "b"))
-    springs = [
-        (f"{node}.{axis}", end if end is None else f"{end}.{axis}", 1.0 + 0.1 * place + 0.2 * row, 0.03)
-        for place, (node, end) in enumerate(chain)
-        for row, axis in enumerate(axes)
-    ]
-    system = VibrationSystem(lumped({f"{node}.{axis}": 1.0 for node in "abc" for axis in axes}, springs))
-    for axis, force in zip(axes, (0.6, 0.3, 0.3), strict=True):
-        system.add(HarmonicForce(f"c.{axis}", force))
-    law = ElasticSlider(2.0, normal_stiffness=3.0)
-    for node in "ab":
-        sides = {"tangential": ("x", "y"), "normal": "z"}
-        system.add(FrictionContact(f"at {node}", node, **sides, friction=0.4, preload=0.5, law=law))
+    system = pressed_blocks()
     frequencies = np.array([0.13, 0.2, 0.3])
     sizes = [
         [

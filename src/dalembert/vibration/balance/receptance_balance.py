@@ -173,15 +173,15 @@ class ReceptanceBalance:
 
     def _beyond(self, rows: np.ndarray, local: np.ndarray, reference: np.ndarray, rigid: bool = False) -> ActiveCells:
         """Cells with their Jacobians (cells, columns · coefficients, ...), less their references (cells, columns)."""
-        blocks, own = local.copy(), None
+        blocks, displaced = local.copy(), None
         diagonal = np.arange(blocks.shape[1])
         stiffness = np.repeat(reference, self.series.count, axis=1)
         if rigid:
             # ∂u/∂w = 1 - λ'/ε, and ∂(λ - r u)/∂w = λ' - r + r λ'/ε.
-            own = -np.repeat(self._flexibility[rows], self.series.count, axis=1)[:, :, None] * local
-            blocks -= stiffness[:, :, None] * own
+            displaced = -np.repeat(self._flexibility[rows], self.series.count, axis=1)[:, :, None] * local
+            blocks -= stiffness[:, :, None] * displaced
         blocks[:, diagonal, diagonal] -= stiffness
-        return ActiveCells(rows, blocks, own)
+        return ActiveCells(rows, blocks, displaced)
 
     @cached_property
     def _penalties(self) -> np.ndarray:

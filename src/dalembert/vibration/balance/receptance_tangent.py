@@ -41,13 +41,13 @@ KRYLOV, CYCLES = 200, 3
 
 @dataclass(frozen=True)
 class ActiveCells:
-    """Elements of a kind: their rows (cells, columns), and the blocks of m (cells, unknowns, unknowns). ``own``: those
-    that rigid contacts add to the unit matrix.
+    """Elements of a kind: their rows (cells, columns), and the blocks of m (cells, unknowns, unknowns). ``displaced``:
+    those that rigid contacts add to the unit matrix.
     """
 
     rows: np.ndarray
     blocks: np.ndarray
-    own: np.ndarray | None = None
+    displaced: np.ndarray | None = None
 
     @cached_property
     def share(self) -> bool:
@@ -146,13 +146,12 @@ class ReceptanceTangent:
         inner = corner - flat @ columns.reshape(-1, borders)
         right = np.append(top[rows].ravel(), bottom - flat @ top.ravel())
         beside = columns[rows].reshape(count, borders)
-        if count <= DIRECT or (failed := self._bordered_iterated(beside, reached, inner, right, tolerance)) is None:
+        solution = None if count <= DIRECT else self._bordered_iterated(beside, reached, inner, right, tolerance)
+        if solution is None:
             if count > SIGNED:
                 raise np.linalg.LinAlgError("GMRES does not converge")
             below = -np.stack([self._times(row.reshape(-1, size), transposed=True).ravel() for row in reached])
             solution = np.linalg.solve(np.block([[self._matrix, beside], [below, inner]]), right)
-        else:
-            solution = failed
         active, scalars = solution[:count].reshape(-1, size), solution[count:]
         result = top - columns @ scalars - self.point.respond(self._times(active), rows)
         result[rows] = active
@@ -253,8 +252,8 @@ class ReceptanceTangent:
             for place, block in zip(places, cells.blocks, strict=True):
                 columns = response[:, place].reshape(count, -1) @ block
                 matrix.reshape(count, len(self._rows), size)[:, place] += columns.reshape(count, len(place), size)
-            if cells.own is not None:
-                for place, block in zip(places, cells.own, strict=True):
+            if cells.displaced is not None:
+                for place, block in zip(places, cells.displaced, strict=True):
                     unknowns = (place[:, None] * size + np.arange(size)).ravel()
                     matrix[np.ix_(unknowns, unknowns)] += block
         if self._support is not None:
@@ -273,7 +272,7 @@ class ReceptanceTangent:
 
         operator = LinearOperator((size, size), matvec=preconditioned, dtype=float)  # type: ignore[call-arg]
         # Rigid contacts on all degrees of freedom have no good preconditioner: the dense system follows sooner.
-        cycles = 1 if size <= SIGNED and any(cells.own is not None for cells in self.cells) else CYCLES
+        cycles = 1 if size <= SIGNED and any(cells.displaced is not None for cells in self.cells) else CYCLES
         solution, failed = gmres(operator, right.ravel(), rtol=tolerance, atol=0.0, restart=KRYLOV, maxiter=cycles)
         if failed and size <= SIGNED:
             return self._direct(right)
@@ -291,8 +290,8 @@ class ReceptanceTangent:
             static = (compliance @ force.astype(compliance.dtype)).astype(float)
             moved = values + static + shapes @ self.point.with_gains(shapes.T @ force)
             for places, cells in zip(self._places, self.cells, strict=True):
-                if cells.own is not None:
-                    moved[places] += (cells.own @ values[places].reshape(*cells.own.shape[:2], 1)).reshape(
+                if cells.displaced is not None:
+                    moved[places] += (cells.displaced @ values[places].reshape(*cells.displaced.shape[:2], 1)).reshape(
                         *places.shape, -1
                     )
             return moved, force
@@ -330,7 +329,7 @@ class ReceptanceTangent:
             compliance = self.point.stuck.compliance[rows[:, :, None], rows[:, None, :]]
             product = (compliance @ blocks.reshape(len(rows), columns, -1)).reshape(blocks.shape)
             product[:, np.arange(columns * size), np.arange(columns * size)] += 1.0
-            product += 0.0 if cells.own is None else cells.own
+            product += 0.0 if cells.displaced is None else cells.displaced
             try:
                 inverses = np.linalg.inv(product)
             except np.linalg.LinAlgError:  # an element that alone holds a part, and slips

@@ -9,7 +9,7 @@ from dalembert.errors import InputError, SolveError
 from dalembert.vibration.balance.newton import ROUNDING, VERIFIED
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.balance.row_elements import Elements
-from dalembert.vibration.interface.receptances import Receptances
+from dalembert.vibration.interface.receptances import ReceptancePoint, Receptances
 from dalembert.vibration.interface.stiffened_mode import with_stiffened_mode
 from dalembert.vibration.interface.stuck_structure import StuckStructure, stiffened, stuck_structure
 from dalembert.vibration.modes.free_motion import FreeMotion, Linear, ModePlane
@@ -38,7 +38,9 @@ class ReceptanceModes(ModeEquations):
         if not self.series().mean:
             return np.zeros((len(problem.lowered.row_names), self.series().count))
         samples = problem.method.first_samples
-        solution = problem.solve(problem.at(STILL).linear, STILL, samples)  # type: ignore[union-attr]
+        point = problem.at(STILL)
+        assert isinstance(point, ReceptancePoint)  # that of these equations
+        solution = problem.solve(point.linear, STILL, samples, point=point)
         if not solution.converged:
             raise SolveError("backbone: the static forces found no balance; give smaller ones, or hold the structure")
         return solution.unknowns

@@ -141,16 +141,16 @@ def _step(modes: Modes, laws: Laws, rated: bool, h: float) -> np.ndarray:
     by_modes = lu_solve(factors, shapes - modes.compliance @ drag, check_finite=False)
     by_states, moved = np.zeros((rows, states)), slice(None) if rated else numbers
     by_states[:, moved] = -lu_solve(factors, modes.compliance @ memory[:, moved], check_finite=False)
-    pushed, held = shapes.T @ (beyond @ by_modes + drag), shapes.T @ (beyond @ by_states + memory)
+    by_present, by_past = shapes.T @ (beyond @ by_modes + drag), shapes.T @ (beyond @ by_states + memory)
     # Trapezoidal rule: (4 μ/h² + 2 C/h + K) η_+ + p_+ = (4 μ/h² + 2 C/h - K) η + 4 μ/h η' - p, with p = Wᵀ d, and
     # without inertia (C/h + K) η_+ + p_+ = C/h η.
     inertias, ended = np.diag(modes.inertias * heavy), np.diag(heavy.astype(float))
     carried = 4 / h**2 * inertias + np.where(heavy, 2 / h, 1 / h)[:, None] * modes.damping
-    right = -held
+    right = -by_past
     right[:, :count] += carried - ended @ modes.stiffness
     right[:, count : 2 * count] += 4 / h * inertias
     right[:, -count:] -= ended
-    places = np.linalg.solve(carried + modes.stiffness + pushed, right)
+    places = np.linalg.solve(carried + modes.stiffness + by_present, right)
     speeds = 2 / h * ended @ places
     speeds[:, :count] -= 2 / h * ended
     speeds[:, count : 2 * count] -= ended
@@ -160,4 +160,4 @@ def _step(modes: Modes, laws: Laws, rated: bool, h: float) -> np.ndarray:
     if rated:
         following += laws.turning @ (displaced / h + seen @ places / h + past)
         following = np.vstack([following, displaced - seen @ places])
-    return np.vstack([places, speeds, following, pushed @ places + held])
+    return np.vstack([places, speeds, following, by_present @ places + by_past])

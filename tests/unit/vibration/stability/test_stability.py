@@ -25,7 +25,7 @@ from dalembert.vibration import (
 )
 from dalembert.vibration.stability import stability
 from support import says
-from vibrating_systems import duffing, one_mass, two_masses
+from vibrating_systems import duffing, one_mass, pressed_blocks, two_masses
 
 TURN = 2 * np.pi
 
@@ -48,32 +48,13 @@ def springs_and_slider(mass: float = 1.0) -> VibrationSystem:
     return system
 
 
-def plate_on_the_ground() -> VibrationSystem:
-    """Two pressed contacts with friction in two directions, at which a motion is unstable."""
-    axes = "xyz"
-    masses = {f"{node}.{axis}": 1.0 for node in "abc" for axis in axes}
-    springs = [
-        (f"{node}.{axis}", end if end is None else f"{end}.{axis}", 1.0 + 0.1 * place + 0.2 * row, 0.03)
-        for place, (node, end) in enumerate((("a", None), ("b", "a"), ("c", "b")))
-        for row, axis in enumerate(axes)
-    ]
-    system = VibrationSystem(lumped(masses, springs))
-    for axis, force in zip(axes, (0.6, 0.3, 0.3), strict=True):
-        system.add(HarmonicForce(f"c.{axis}", force))
-    law = ElasticSlider(2.0, normal_stiffness=3.0)
-    for node in "ab":
-        sides = {"tangential": ("x", "y"), "normal": "z"}
-        system.add(FrictionContact(f"at {node}", node, **sides, friction=0.4, preload=0.5, law=law))
-    return system
-
-
 @pytest.mark.parametrize(
     ("posed", "unstable", "error"),
     [
         (springs_and_slider, 0, 1e-7),
         # Without mass both take backward differences, of different coordinates: an error of the steps.
         (lambda: springs_and_slider(0.0), 0, 1e-4),
-        (plate_on_the_ground, 1, 1e-7),
+        (pressed_blocks, 1, 1e-7),
     ],
 )
 def test_multipliers_by_receptances_are_those_by_dynamic_stiffnesses(posed, unstable: int, error: float) -> None:

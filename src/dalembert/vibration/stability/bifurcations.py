@@ -71,26 +71,30 @@ def fold_findings(frequencies: Sequence[float], folds: np.ndarray, harmonics: in
     a fold a little, which is no finding; ``harmonics``: of the curve.
     """
     apart = [frequency for frequency in frequencies if not np.any(np.abs(folds - frequency) <= AT_FOLD * frequency)]
+    if not apart:
+        return ()
     cause = f"a fold lies at another frequency with {counted(harmonics, 'harmonic')} than with more"
-    return _unknown("stability-near-fold", apart, cause, "Keep more harmonics.", harmonics=harmonics)
+    values, message = _unknown(apart, cause)
+    return (
+        Finding("stability-near-fold", "warning", {**values, "harmonics": harmonics}, message, "Keep more harmonics."),
+    )
 
 
 def rows_findings(frequencies: Sequence[float]) -> tuple[Finding, ...]:
     """Return the finding on points whose stability was not computed. ``frequencies``: of these points, Hz."""
-    cause = f"more than {MOST_ROWS} displacements of contacts slip or open there"
-    advice = "Use fewer contacts, or compare these motions with integration in time."
-    return _unknown("stability-many-contacts", frequencies, cause, advice, rows=MOST_ROWS)
-
-
-def _unknown(code: str, frequencies: Sequence[float], cause: str, advice: str, **values: int) -> tuple[Finding, ...]:
-    """The finding on points whose stability is not known; none without such points."""
     if not frequencies:
         return ()
+    values, message = _unknown(frequencies, f"more than {MOST_ROWS} displacements of contacts slip or open there")
+    advice = "Use fewer contacts, or compare these motions with integration in time."
+    return (Finding("stability-many-contacts", "warning", {**values, "rows": MOST_ROWS}, message, advice),)
+
+
+def _unknown(frequencies: Sequence[float], cause: str) -> tuple[dict[str, float], str]:
+    """Values and message of a finding on points whose stability is not known."""
     low, high = float(min(frequencies)), float(max(frequencies))
     count = counted(len(frequencies), "point")
     message = f"The stability of {count} between {low:.6g} and {high:.6g} Hz is not known: {cause}."
-    every = {"points": len(frequencies), "lowest": low, "highest": high, **values}
-    return (Finding(code, "warning", every, message, advice),)
+    return {"points": len(frequencies), "lowest": low, "highest": high}, message
 
 
 def _said(result: Exponents) -> int:

@@ -59,7 +59,7 @@ _NAMES = {
         Posterior Prediction Profiles ProportionalNoise ResidualDiagnostics ShootingState compare_models
         cross_validate design identifiability identify identify_bands identify_set input_errors likelihood
         population predict profile sample
-        RegularisedFit regularise
+        RegularisedFit RingDown regularise ring_down
     """,
     "multibody": """
         System Point TimeResponse Trajectory WorkPrecision simulate campbell equilibrium modes work_precision

@@ -80,6 +80,7 @@ from dalembert.inverse import Profiles as Profiles
 from dalembert.inverse import ProportionalNoise as ProportionalNoise
 from dalembert.inverse import RegularisedFit as RegularisedFit
 from dalembert.inverse import ResidualDiagnostics as ResidualDiagnostics
+from dalembert.inverse import RingDown as RingDown
 from dalembert.inverse import ShootingState as ShootingState
 from dalembert.inverse import compare_models as compare_models
 from dalembert.inverse import cross_validate as cross_validate
@@ -94,6 +95,7 @@ from dalembert.inverse import population as population
 from dalembert.inverse import predict as predict
 from dalembert.inverse import profile as profile
 from dalembert.inverse import regularise as regularise
+from dalembert.inverse import ring_down as ring_down
 from dalembert.inverse import sample as sample
 from dalembert.multibody import AncfBeam as AncfBeam
 from dalembert.multibody import AncfCable as AncfCable

@@ -15,6 +15,8 @@ from dalembert.inverse.comparison.compare_models import compare_models
 from dalembert.inverse.comparison.cross_validate import cross_validate
 from dalembert.inverse.comparison.cross_validation import CrossValidation
 from dalembert.inverse.comparison.model_comparison import ModelComparison
+from dalembert.inverse.decays.ring_down import ring_down
+from dalembert.inverse.decays.ring_down_result import RingDown
 from dalembert.inverse.diagnostics.findings import Outlier
 from dalembert.inverse.diagnostics.influence import Influence
 from dalembert.inverse.diagnostics.residual_diagnostics import ResidualDiagnostics
@@ -104,6 +106,7 @@ __all__ = [
     "ProportionalNoise",
     "RegularisedFit",
     "ResidualDiagnostics",
+    "RingDown",
     "Sampled",
     "Screened",
     "SearchIteration",
@@ -126,5 +129,6 @@ __all__ = [
     "predict",
     "profile",
     "regularise",
+    "ring_down",
     "sample",
 ]

@@ -13,7 +13,7 @@ from dalembert.results import Summarised
 Sections = Callable[[Any, ReportOptions], list[Section]]
 Function = TypeVar("Function", bound=Sections)
 _MODULES = {
-    "inverse": "fit assessment alternative inertial",
+    "inverse": "fit assessment alternative inertial decay",
     "multibody": "motion path",
     "study": "motion",
     "structure": "mode",

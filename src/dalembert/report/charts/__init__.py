@@ -12,6 +12,7 @@ _NAMES = {
     "frequency.frequency_curve": "frequency_curve harmonic_content load_factors points_found",
     "frequency.interface_map": "interface_map",
     "frequency.linear_modes": "campbell reduction_errors",
+    "frequency.ring_down": "decay ring_down",
     "frequency.shapes": "deformation mode_shapes",
     "frequency.static_contact": "normal_forces",
     "frequency.time_domain": "loops_in_time periodic_motion time_comparison",

@@ -20,6 +20,8 @@ from dalembert.report.charts.frequency.frequency_curve import points_found as po
 from dalembert.report.charts.frequency.interface_map import interface_map as interface_map
 from dalembert.report.charts.frequency.linear_modes import campbell as campbell
 from dalembert.report.charts.frequency.linear_modes import reduction_errors as reduction_errors
+from dalembert.report.charts.frequency.ring_down import decay as decay
+from dalembert.report.charts.frequency.ring_down import ring_down as ring_down
 from dalembert.report.charts.frequency.shapes import deformation as deformation
 from dalembert.report.charts.frequency.shapes import mode_shapes as mode_shapes
 from dalembert.report.charts.frequency.static_contact import normal_forces as normal_forces

@@ -1,0 +1,1 @@
+"""Frequency, damping and amplitude of a mode from its free decay."""

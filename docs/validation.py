@@ -64,6 +64,7 @@ AREAS = {
             "Rotors in frequency",
             "Hysteretic laws in frequency",
             "Paths and stability in frequency",
+            "Ring-downs",
             "Structures",
         ),
     ),

@@ -76,7 +76,7 @@ _NAMES = {
         CubicSpring Gap BilinearStop BoucWen FourParameterIwan LawElement UserElement UserLaw law
         HarmonicBalance FrequencyCurve FrequencyResponse HeldAmplitude frequency_response
         coexisting_motions follow_branch isolated_branches
-        Backbone ResonanceTrack backbone floquet_multipliers track_resonance
+        Backbone BackboneResponse ResonanceTrack backbone floquet_multipliers track_resonance
         CurveFamily frequency_responses
         Deformation deformation StaticContact static_contact
         Newmark PeriodicMotion TimeComparison compare_in_time steady_state

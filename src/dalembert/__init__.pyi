@@ -203,6 +203,7 @@ from dalembert.uncertainty import global_sensitivity as global_sensitivity
 from dalembert.uncertainty import propagate as propagate
 from dalembert.uncertainty import screen as screen
 from dalembert.vibration import Backbone as Backbone
+from dalembert.vibration import BackboneResponse as BackboneResponse
 from dalembert.vibration import BaseExcitation as BaseExcitation
 from dalembert.vibration import BilinearStop as BilinearStop
 from dalembert.vibration import BoucWen as BoucWen

@@ -17,6 +17,7 @@ _NAMES = {
     "laws.stops": "BilinearStop Gap",
     "laws.user_element": "UserElement",
     "laws.user_law": "UserLaw",
+    "modes.backbone_response": "BackboneResponse",
     "modes.backbone_result": "Backbone",
     "modes.nonlinear_modes": "backbone",
     "paths.curve": "FrequencyCurve Peak",

@@ -13,6 +13,7 @@ from dalembert.vibration.laws.stops import BilinearStop as BilinearStop
 from dalembert.vibration.laws.stops import Gap as Gap
 from dalembert.vibration.laws.user_element import UserElement as UserElement
 from dalembert.vibration.laws.user_law import UserLaw as UserLaw
+from dalembert.vibration.modes.backbone_response import BackboneResponse as BackboneResponse
 from dalembert.vibration.modes.backbone_result import Backbone as Backbone
 from dalembert.vibration.modes.nonlinear_modes import backbone as backbone
 from dalembert.vibration.paths.curve import FrequencyCurve as FrequencyCurve

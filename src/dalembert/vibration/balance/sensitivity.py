@@ -40,16 +40,18 @@ def sensitivities(problem: Equations, solution: Solution, perturbed: Sequence[Lo
     inner_pushes, residuals = [], []
     for system in perturbed:
         # f' - Z' x of all degrees of freedom: what the parameter changes where the motion is held.
-        push = series.phasors(_step(system.load_coefficients(series, point.omega))) - _unbalanced(system, point, motion)
+        push = series.phasors(step_of(system.load_coefficients(series, point.omega))) - unbalanced(
+            system, point.omega, point.frequencies, motion
+        )
         outer, inner = push @ condensation.retained, np.asarray((condensation.back.T @ push.T).T)
         # The part at q less that at the interior, condensed as loads are.
         condensed = outer - (point.passed @ inner[:, :, None])[:, :, 0]
         # The laws see the real motion and complex numbers; the linear part carries its derivative in its imaginary
         # part, so that rigid contacts, which see the residual, take both at once.
-        elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
+        elements = with_elements(problem.lowered, system)
         stepped = linear - 1j * STEP * series.coefficients(condensed)
         residuals.append(
-            _step(
+            step_of(
                 Balance(elements, series, problem.method.events)
                 .residual(stepped, solution.unknowns, point.omega)
                 .residual
@@ -81,13 +83,15 @@ def _by_receptances(
     motion = series.phasors(point.motion(balance.deviation(point.omega, solution.unknowns)))
     pushes, forces, residuals = [], [], []
     for system in perturbed:
-        push = series.phasors(_step(system.load_coefficients(series, point.omega))) - _unbalanced(system, point, motion)
-        elements = replace(problem.lowered, blocks=system.blocks, laws=system.laws, functions=system.functions)
+        push = series.phasors(step_of(system.load_coefficients(series, point.omega))) - unbalanced(
+            system, point.omega, point.frequencies, motion
+        )
+        elements = with_elements(problem.lowered, system)
         # The parameter may change the forces and, of rigid contacts, displacements where what they predict is held.
         moving = replace(balance, lowered=elements)
-        displaced = _step(moving.displacements(solution.unknowns))
+        displaced = step_of(moving.displacements(solution.unknowns))
         pushes.append(series.coefficients(push))
-        forces.append(_step(moving.deviation(point.omega, solution.unknowns)))
+        forces.append(step_of(moving.deviation(point.omega, solution.unknowns)))
         residuals.append(displaced + point.respond(forces[-1]) - rows @ point.answer(pushes[-1]))
     moved = -np.moveaxis(tangent.solve(np.stack(residuals, axis=2)), 2, 0)
     # dx/dp = Z_r⁻¹ (f' - Z' x - Bᵀ (∂λ/∂p + m du/dp)): the motion by what the parameter adds to all forces.
@@ -99,16 +103,23 @@ def _by_receptances(
     )
 
 
-def _unbalanced(lowered: Lowered, point: Any, motion: np.ndarray) -> np.ndarray:
-    """Z' x, (orders, n), from the imaginary parts of the matrices and of the speed of a rotor."""
+def with_elements(real: Lowered, moved: Lowered) -> Lowered:
+    """Return a system with the elements of another."""
+    return replace(real, blocks=moved.blocks, laws=moved.laws, functions=moved.functions)
+
+
+def unbalanced(lowered: Lowered, omega: float, frequencies: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Return Z' x, (orders, n), from the imaginary parts of the matrices and of the speed of a rotor. ``motion``
+    (orders, n): phasors x at frequencies h ω (orders,).
+    """
     # (Ω N)' and (Ω G)': the speed may depend on the parameter, too.
-    speed = lowered.spin(point.omega)[0]
+    speed = lowered.spin(omega)[0]
     matrices = {name: matrix for name in MATRICES if (matrix := getattr(lowered.structure, name)) is not None}
     matrices |= {name: speed * matrices[name] for name in ROTATING if name in matrices}
-    moved = {name: _step(matrix) @ motion.T for name, matrix in matrices.items()}
-    return np.asarray(combined(factors(moved, point.frequencies, 1.0), moved)).T
+    moved = {name: step_of(matrix) @ motion.T for name, matrix in matrices.items()}
+    return np.asarray(combined(factors(moved, frequencies, 1.0), moved)).T
 
 
-def _step(array: Any) -> Any:
-    """Derivative in an imaginary part; zero where there is none."""
+def step_of(array: Any) -> Any:
+    """Return the derivative in an imaginary part; zero where there is none."""
     return array.imag / STEP if np.iscomplexobj(array) else 0.0 * array

@@ -12,7 +12,7 @@ cosine and no sine, and a plane across the path separates one motion from the ne
 
 import hashlib
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
@@ -23,8 +23,11 @@ from dalembert.structure.eigenmodes import real_part
 from dalembert.vibration.balance.equations import Equations
 from dalembert.vibration.balance.harmonic_balance import AUTO, MOST_SAMPLES, HarmonicBalance
 from dalembert.vibration.balance.newton import line_search
+from dalembert.vibration.balance.sensitivity import step_of, unbalanced
 from dalembert.vibration.fourier import Fourier
+from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.modes.free_motion import FreeMotion, Linear, ModePlane
+from dalembert.vibration.system.harmonic_force import StaticForce
 
 PHASES = 1024
 """Instants of a period among which the extreme positions are sought."""
@@ -33,12 +36,14 @@ PHASES = 1024
 @dataclass(frozen=True)
 class Trial:
     """A motion that is not yet balanced. ``residual`` (unknowns + 3,): of the balance, the amplitude, the phase and the
-    plane, without dimension; ``floor``: its rounding; ``local``: what the Jacobian there is made of.
+    plane, without dimension; ``floor``: its rounding; ``scale``: by which the balance is divided; ``local``: what the
+    Jacobian there is made of.
     """
 
     motion: FreeMotion
     residual: np.ndarray
     floor: float
+    scale: float
     local: Any
 
     @property
@@ -81,6 +86,39 @@ class ModeEquations(ABC):
         scales. LinAlgError where it is singular.
         """
 
+    @abstractmethod
+    def change(self, at: Trial, moved: Lowered) -> np.ndarray:
+        """Return the derivative of the balance by a parameter where the motion is held (unknowns,).
+
+        ``moved``: the system along the parameter, moved by a complex step.
+        """
+
+    def slopes(self, motion: FreeMotion, moved: Iterable[Lowered]) -> np.ndarray:
+        """Derivatives of ω and ξ = 2 ζ ω by parameters at a motion of a constant amplitude, (parameters, 2)."""
+        # J dY = -∂R/∂p (implicit function theorem), with the amplitude, the phase and the plane held.
+        plane = self.level(motion)
+        at = self.trial(motion, plane, motion.samples)
+        result = []
+        for system in moved:
+            right = np.append(-self.change(at, system) / at.scale, np.zeros(3))
+            step = self.step(at, plane, right)
+            result.append([motion.omega * step[-3], motion.omega * step[-2]])
+        return np.array(result).reshape(-1, 2)
+
+    def pushes(self, motion: FreeMotion, moved: Lowered) -> np.ndarray:
+        """Derivative of the forces on all degrees of freedom, f' - Z' X, where the motion is held (n, coefficients)."""
+        series = self.series()
+        frequencies = motion.omega * np.array(series.orders, dtype=float)
+        displacements = series.phasors(self.displacements(motion))
+        # Z' of the damping C - ξ M: a mass gives back its part of the negative damping.
+        changes = unbalanced(moved, motion.omega, frequencies, displacements)
+        inertial = step_of(moved.structure.mass) @ displacements.T
+        changes -= (1j * frequencies * motion.growth)[:, None] * np.asarray(inertial).T
+        pushes = -series.coefficients(changes)
+        if series.mean:
+            pushes += step_of(with_static_forces(moved).load_coefficients(series, motion.omega))
+        return pushes
+
     def with_method(self, method: HarmonicBalance) -> "ModeEquations":
         """Return the equations with other harmonics."""
         return replace(self, problem=self.problem.with_method(method))
@@ -105,11 +143,14 @@ class ModeEquations(ABC):
 
     def at_size(self, guess: FreeMotion, size: float, samples: int) -> FreeMotion:
         """The motion at an amplitude, from a guess at any."""
-        # A plane of constant log a: the amplitude stays, everything else is free.
-        level = np.zeros(guess.harmonics.size + 3)
-        level[-1] = 1.0
         at = replace(guess, size=size)
-        return self.solve(at, ModePlane(level, at, self.scale(guess)), samples)
+        return self.solve(at, self.level(at), samples)
+
+    def level(self, motion: FreeMotion) -> ModePlane:
+        """The plane of constant amplitude through a motion: everything else is free."""
+        level = np.zeros(motion.harmonics.size + 3)
+        level[-1] = 1.0
+        return ModePlane(level, motion, self.scale(motion))
 
     def solve(self, guess: FreeMotion, plane: ModePlane, samples: int) -> FreeMotion:
         """Newton's method on a plane across the path, with as many samples as it needs, and at least those given."""
@@ -195,6 +236,11 @@ class ModeEquations(ABC):
 
     def _moved(self, plane: ModePlane, samples: int, motion: FreeMotion, step: np.ndarray, part: float) -> Trial:
         return self.trial(plane.moved(motion, part * step), plane, samples)
+
+
+def with_static_forces(system: Lowered) -> Lowered:
+    """The system without its harmonic forces."""
+    return replace(system, forces=tuple(force for force in system.forces if isinstance(force, StaticForce)))
 
 
 def _numbers(motion: FreeMotion) -> np.ndarray:

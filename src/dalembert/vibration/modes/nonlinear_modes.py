@@ -25,7 +25,7 @@ from dalembert.vibration.interface.contacts_stuck import ContactsStuck
 from dalembert.vibration.interface.lowering import lower
 from dalembert.vibration.modes.backbone_result import Backbone
 from dalembert.vibration.modes.free_motion import FreeMotion, Linear
-from dalembert.vibration.modes.mode_equations import ModeEquations
+from dalembert.vibration.modes.mode_equations import ModeEquations, with_static_forces
 from dalembert.vibration.modes.mode_paths import (
     first_motion,
     from_linear_mode,
@@ -38,7 +38,6 @@ from dalembert.vibration.modes.receptance_modes import ReceptanceModes
 from dalembert.vibration.modes.uncondensed_modes import UncondensedModes
 from dalembert.vibration.paths.path_end import end_findings
 from dalembert.vibration.storage import versions
-from dalembert.vibration.system.harmonic_force import StaticForce
 from dalembert.vibration.system.requirements import positive_numbers, require_still
 from dalembert.vibration.system.system import VibrationSystem
 
@@ -116,8 +115,8 @@ def backbone(
     require_one_period(method, "backbone")
     method = replace(method, solver=chosen_solver(lower(system), method, stability=True))
     sizes = positive_numbers(amplitudes, "backbone", "amplitudes", "m")
-    posed = _PosedBackbone(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)
-    nonlinear_mode, motions = _follow(posed, method.first())
+    posed = PosedBackbone(system, sizes, isinstance(amplitudes, tuple), mode, dof, checkpoint)
+    nonlinear_mode, motions = follow(posed, method.first())
     if not method.automatic:
         return _conclude(posed, nonlinear_mode, motions)
     while True:
@@ -126,7 +125,7 @@ def backbone(
         better, error = enough_harmonics(FreeLevel(nonlinear_mode), [motions[point] for point in points])
         if better.highest == nonlinear_mode.problem.method.highest:
             break
-        nonlinear_mode, motions = _follow(posed, better)
+        nonlinear_mode, motions = follow(posed, better)
     result = _conclude(posed, nonlinear_mode, motions)
     return replace(result, findings=(*result.findings, *choice_findings(better, error)))
 
@@ -170,7 +169,7 @@ class FreeLevel:
 
 
 @dataclass(frozen=True)
-class _PosedBackbone:
+class PosedBackbone:
     """A mode to follow with any number of harmonics. ``sizes``: the amplitudes (m), or the two ends of a path."""
 
     system: VibrationSystem
@@ -181,11 +180,10 @@ class _PosedBackbone:
     checkpoint: Checkpoint | None
 
 
-def _follow(posed: _PosedBackbone, method: HarmonicBalance) -> tuple[ModeEquations, list[FreeMotion]]:
+def follow(posed: PosedBackbone, method: HarmonicBalance) -> tuple[ModeEquations, list[FreeMotion]]:
     """Follow the mode with a number of harmonics: its equations and motions."""
     driven = equations(posed.system, method, posed.checkpoint, residuals=False)
-    static = tuple(force for force in driven.lowered.forces if isinstance(force, StaticForce))
-    lowered = replace(driven.lowered, forces=static)
+    lowered = with_static_forces(driven.lowered)
     free = replace(driven, lowered=lowered, _balances={}, _stuck=ContactsStuck(lowered))
     kind = ReceptanceModes if free.by_receptances else UncondensedModes
     linear = kind(free, -1, posed.mode).linear()
@@ -213,7 +211,7 @@ def _scaled(linear: Linear, row: int, name: str) -> Linear:
     return replace(linear, moved=linear.moved / linear.shape[row], shape=linear.shape / linear.shape[row])
 
 
-def _conclude(posed: _PosedBackbone, mode: ModeEquations, motions: list[FreeMotion]) -> Backbone:
+def _conclude(posed: PosedBackbone, mode: ModeEquations, motions: list[FreeMotion]) -> Backbone:
     names = mode.problem.lowered.structure.dofs.names
     energies, works = np.array([_energy_and_work(mode, motion) for motion in motions]).T
     omegas, growths, sizes, iterations, residuals, converged, samples = (

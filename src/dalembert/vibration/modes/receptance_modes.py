@@ -1,6 +1,6 @@
 """Nonlinear modes by receptances: displacements of the elements' rows are the unknowns."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,6 +9,8 @@ from dalembert.errors import InputError, SolveError
 from dalembert.vibration.balance.newton import ROUNDING, VERIFIED
 from dalembert.vibration.balance.receptance_balance import ReceptanceBalance
 from dalembert.vibration.balance.row_elements import Elements
+from dalembert.vibration.balance.sensitivity import step_of, with_elements
+from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.interface.receptances import ReceptancePoint, Receptances
 from dalembert.vibration.interface.stiffened_mode import with_stiffened_mode
 from dalembert.vibration.interface.stuck_structure import StuckStructure, stiffened, stuck_structure
@@ -133,7 +135,17 @@ class ReceptanceModes(ModeEquations):
         scale, measured = evaluation.scale, motion.harmonics[self.problem.lowered.measured]
         everything = np.append(evaluation.residual.ravel() / scale, self.wrong(motion, measured, plane))
         floor = min(ROUNDING * max(float(np.linalg.norm(motion.harmonics)), evaluation.terms) / scale, VERIFIED)
-        return Trial(motion, everything, floor, (point, balance, evaluation))
+        return Trial(motion, everything, floor, scale, (point, balance, evaluation))
+
+    def change(self, at: Trial, moved: Lowered) -> np.ndarray:
+        """As the equations state it."""
+        point, balance, _ = at.local
+        motion = at.motion
+        moving = replace(balance, lowered=with_elements(balance.lowered, moved))
+        forces = step_of(moving.deviation(motion.omega, motion.harmonics))
+        displaced = step_of(moving.displacements(motion.harmonics))
+        answer = point.stuck.rows @ point.answer(self.pushes(motion, moved))
+        return (displaced + point.respond(forces) - answer).ravel()
 
     def step(self, at: Trial, plane: ModePlane, right: np.ndarray) -> np.ndarray:
         """As the equations state it."""

@@ -9,7 +9,9 @@ from scipy.linalg import eig
 
 from dalembert.errors import InputError, SolveError
 from dalembert.vibration.balance.newton import ROUNDING
+from dalembert.vibration.balance.sensitivity import STEP, step_of, with_elements
 from dalembert.vibration.balance.uncondensed import Local, Uncondensed
+from dalembert.vibration.interface.lowering import Lowered
 from dalembert.vibration.modes.free_motion import FreeMotion, Linear, ModePlane
 from dalembert.vibration.modes.mode_equations import ModeEquations, Trial
 
@@ -155,7 +157,18 @@ class UncondensedModes(ModeEquations):
         everything = np.append(residual.ravel() / scale, self.wrong(motion, self.basis[self.row] @ harmonics, plane))
         # Stiff coordinates cancel large terms: a residual of their rounding counts as converged.
         floor = ROUNDING * np.abs(system.matrices[0]).max() * np.linalg.norm(harmonics) / scale
-        return Trial(motion, everything, float(floor), (system, local))
+        return Trial(motion, everything, float(floor), scale, (system, local))
+
+    def change(self, at: Trial, moved: Lowered) -> np.ndarray:
+        """As the equations state it."""
+        system, motion = at.local[0], at.motion
+        count = system.retained
+        push = self.basis.T @ self.pushes(motion, moved)
+        linear = self._linear_part(system, motion.harmonics, motion.omega, motion.growth)[:count]
+        # Elements see the real motion and complex numbers; rigid contacts see the change of the linear part, too.
+        elements = replace(system, lowered=with_elements(system.lowered, moved)).balance
+        evaluation = elements.residual(linear - 1j * STEP * push[:count], motion.harmonics[:count], motion.omega)
+        return np.concatenate([step_of(evaluation.residual).ravel(), -push[count:].ravel()])
 
     def step(self, at: Trial, plane: ModePlane, right: np.ndarray) -> np.ndarray:
         """As the equations state it."""

@@ -1,20 +1,17 @@
 """The response of a vibrating system over frequency as a forward model."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from copy import copy
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Any
+from functools import cached_property, partial
 
 import numpy as np
 
 from dalembert.argument_readers import names_of, samples_of
-from dalembert.errors import InputError, ModelError, SolveError, require_known, told
+from dalembert.errors import InputError, SolveError, require_known
 from dalembert.findings import Finding
-from dalembert.forward import Channel, Coordinate, Refinement, Responses, ensemble, error_factor
-from dalembert.forward.builders import built, check_function, cores, inexact, restructured
-from dalembert.forward.complex_steps import Compared
-from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES, central_differences
+from dalembert.forward import Channel, Coordinate
+from dalembert.forward.builders import check_function, cores
+from dalembert.forward.differences import COMPLEX_STEP, DERIVATIVES
 from dalembert.parameter import Parameter
 from dalembert.parameters import Parameters
 from dalembert.threads import single_thread
@@ -22,9 +19,8 @@ from dalembert.units import unit_of
 from dalembert.vibration.balance.equations import Equations, chosen_solver, equations, require_one_period
 from dalembert.vibration.balance.harmonic_balance import HarmonicBalance
 from dalembert.vibration.balance.newton import Solution
-from dalembert.vibration.balance.sensitivity import STEP, sensitivities
+from dalembert.vibration.balance.sensitivity import sensitivities
 from dalembert.vibration.balance.truncation import ForcedLevel, choice_findings, hardest
-from dalembert.vibration.interface.complex_steps import check_laws, check_numbers
 from dalembert.vibration.interface.contacts_stuck import KnownStructures
 from dalembert.vibration.interface.lowering import Lowered, lower
 from dalembert.vibration.paths.amplitudes import Amplitude, highest_order
@@ -32,12 +28,13 @@ from dalembert.vibration.paths.continuation import at_frequencies
 from dalembert.vibration.paths.curve import FrequencyCurve
 from dalembert.vibration.paths.curve_points import response_of, restarted
 from dalembert.vibration.responses.frequency_response import frequency_response
+from dalembert.vibration.responses.structure_response import StructureResponse
 from dalembert.vibration.system.requirements import positive_numbers, require_forces
 from dalembert.vibration.system.system import VibrationSystem
 
 
 @dataclass(frozen=True)
-class FrequencyResponse:
+class FrequencyResponse(StructureResponse):
     """Amplitudes of a vibrating system at given frequencies, as a function of parameters.
 
     Parameters
@@ -115,14 +112,13 @@ class FrequencyResponse:
         return tuple(Channel(name, unit_of(name.partition(" ")[0])) for name in self.channel_names)
 
     @property
+    def shape(self) -> tuple[int, int]:
+        return len(self.frequencies), len(self.channel_names)
+
+    @property
     def coordinate(self) -> Coordinate:
         """The frequencies of the samples."""
         return Coordinate("frequency", "Hz", self.frequencies)
-
-    @property
-    def fingerprint(self) -> str:
-        """Hash of the system at the parameters' first guesses, the channels, the frequencies and the method."""
-        return self._fingerprint
 
     @cached_property
     def _fingerprint(self) -> str:
@@ -130,77 +126,9 @@ class FrequencyResponse:
         settings = self.parameters.identity, self.channel_names, *differences
         return lower(self.system(self.parameters.start)).fingerprint(self.method, *settings)
 
-    def evaluate(self, vectors: np.ndarray) -> Responses:
-        """Responses of a batch over all cores; ``vectors`` (batch, parameters), values (batch, samples, channels).
-
-        A sample one of whose points is not found is marked with the reason, and its values are NaN.
-        """
-        vectors = self.parameters.batch(vectors)
-        values = np.full((len(vectors), len(self.frequencies), len(self.channel_names)), np.nan)
-        failures: list[str | None] = [None] * len(vectors)
-
-        def work(row: int) -> None:
-            try:
-                values[row] = self._sizes(vectors[row])
-            except Exception as error:  # the user's builder raised: this sample's failure, not the batch's
-                failures[row] = told(error)
-
-        with single_thread():
-            list(ensemble(work, range(len(vectors)), workers=self.workers))
-        return Responses(values, tuple(failures))
-
-    def jacobian(self, vector: np.ndarray) -> np.ndarray:
-        """Exact derivative of the balanced response, (samples, channels, parameters)."""
-        return self.linearise(vector)[1]
-
-    def linearise(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Response (samples, channels) and its exact derivative (samples, channels, parameters).
-
-        A complex step through the builder and the laws of force gives the derivative of the equations of harmonic
-        balance by a parameter. Their Jacobian then gives that of the response (implicit function theorem).
-
-        Raises
-        ------
-        InputError
-            Where the builder, or a law of the user's, cannot run in complex numbers, or loses the imaginary part.
-        SolveError
-            Where a point is not found.
-        """
-        vector = self.parameters.real_vector(vector)
-        if self.derivative != COMPLEX_STEP:
-            return central_differences(self, vector)
-        return self._linearise(vector)
-
-    def check_derivatives(self, vector: np.ndarray) -> None:
-        """Compare the complex step with differences of the properties of all components at a vector (parameters,).
-
-        Nothing is solved, and laws of the user's are not compared here: the next :meth:`jacobian` or :meth:`linearise`
-        does, at the first point that it solves.
-
-        Raises
-        ------
-        InputError
-            With the parameter, the component and its property, where the builder drops the imaginary part.
-        """
-        if self.derivative == COMPLEX_STEP:
-            self._compared.once(vector, lambda thorough: check_numbers(self.builder, self.parameters, vector, thorough))
-
     def first(self, samples: int) -> "FrequencyResponse":
         """The same model, cut to its first ``samples`` frequencies."""
         return self._but(frequencies=self.frequencies[:samples])
-
-    def part(self, share: float) -> "tuple[FrequencyResponse, float]":
-        """The same model at about a share of its frequencies, the first ones, and that share."""
-        samples = int(np.ceil(share * len(self.frequencies))) or 1
-        return self.first(samples), samples / len(self.frequencies)
-
-    def refined(self) -> Refinement | None:
-        """Return the same model with twice the harmonics and one more; None beyond the limits of the method."""
-        method = self.balance.refined()
-        if method is None:
-            return None
-        finer = self._but(method=method, balance=method)
-        return Refinement(finer, error_factor(None), f"with {method.harmonics} harmonics")
 
     @cached_property
     def balance(self) -> HarmonicBalance:
@@ -225,28 +153,11 @@ class FrequencyResponse:
         errors = [level.truncation(motion) for motion in motions if motion.converged]
         return choice_findings(self.balance, max(errors, key=lambda estimate: estimate.rank, default=None))
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Return the state with the number of harmonics, so that every process computes with the same one."""
-        state = {**vars(self), "balance": self.balance}
-        state.pop("_known", None)  # made anew, as it is large
-        return state
-
-    def _but(self, **changes: Any) -> "FrequencyResponse":
-        """The same model with other frequencies or another method, whose derivatives need no second comparison."""
-        model = copy(self)
-        vars(model).update({"balance": self.balance} | changes, _compared=self._compared)
-        vars(model).pop("_fingerprint", None)
-        return model
-
     def _equations(self, system: VibrationSystem, derivatives: bool = False) -> Equations:
         require_one_period(self.balance, "FrequencyResponse")
         require_forces(system.forces, self.frequencies, "FrequencyResponse")
         highest = 2 * np.pi * float(np.max(self.frequencies))
         return equations(system, self.balance, derivatives=derivatives, highest=highest, known=self._known)
-
-    def system(self, vector: np.ndarray) -> VibrationSystem:
-        """The system at a parameter vector (parameters,)."""
-        return built(self.builder, self.parameters.mapping(vector), VibrationSystem)
 
     def curve(self, vector: np.ndarray) -> FrequencyCurve:
         """The whole result at a parameter vector (parameters,)."""
@@ -260,7 +171,7 @@ class FrequencyResponse:
         jacobian = np.empty((*values.shape, len(vector)))
         perturbed = [self._perturbed(vector, column, problem.lowered) for column in range(len(vector))]
         for number, solution in enumerate(self._solutions(problem)):
-            self._check(vector, problem, solution)
+            self._check(vector, partial(_seen_by_functions, problem, solution))
             response = response_of(problem, solution)
             slopes = sensitivities(problem, solution, perturbed)
             for channel, (row, size) in enumerate(places):
@@ -272,21 +183,6 @@ class FrequencyResponse:
     def _known(self) -> KnownStructures:
         """The structure of the system before, which most parameters of contacts do not change."""
         return KnownStructures()
-
-    @cached_property
-    def _compared(self) -> Compared:
-        return Compared()
-
-    def _check(self, vector: np.ndarray, problem: Equations, solution: Solution) -> None:
-        """Compare the complex step with differences, where that was not done."""
-        if not self._compared.vectors:
-            self.check_derivatives(vector)
-        if not self._compared.functions:
-            motion = problem.balance(solution.samples).displacements(solution.unknowns)
-            samples = motion @ problem.balance(solution.samples).series.synthesis.T
-            motions = {element.name: samples[rows] for rows, element in problem.lowered.functions}
-            check_laws(self.builder, self.parameters, vector, motions)
-            self._compared.functions = True
 
     def _solutions(self, problem: Equations) -> Iterator[Solution]:
         """The solution at each frequency; one after the other, since each holds matrices."""
@@ -303,25 +199,15 @@ class FrequencyResponse:
         parts = [name.partition(" ") for name in self.channel_names]
         return [(lowered.structure.dofs.index(dof), Amplitude(kind, self.balance.orders)) for dof, _, kind in parts]
 
-    def _sizes(self, vector: np.ndarray) -> np.ndarray:
-        """Values of the channels, (samples, channels)."""
+    def _values(self, vector: np.ndarray) -> np.ndarray:
         problem = self._equations(self.system(vector))
         places = self._places(problem.lowered)
         responses = (response_of(problem, solution) for solution in self._solutions(problem))
         return np.array([[size.of(response[row]) for row, size in places] for response in responses])
 
-    def _perturbed(self, vector: np.ndarray, column: int, real: Lowered) -> Lowered:
-        """The system along one parameter, moved by a complex step of its scale."""
-        name = self.parameters.names[column]
-        arguments: dict[str, complex] = dict(self.parameters.mapping(vector))
-        arguments[name] = complex(vector[column], STEP * self.parameters.scale[column])
-        try:
-            perturbed = lower(built(self.builder, arguments, VibrationSystem))
-        except (TypeError, ModelError, np.exceptions.ComplexWarning) as error:
-            error = error.__cause__ if isinstance(error, ModelError) else error
-            if not isinstance(error, TypeError | np.exceptions.ComplexWarning):
-                raise
-            raise inexact(name, error) from error
-        if perturbed.row_names != real.row_names or perturbed.structure.dofs.names != real.structure.dofs.names:
-            raise restructured()
-        return perturbed
+
+def _seen_by_functions(problem: Equations, solution: Solution) -> dict[str, np.ndarray]:
+    """Samples of the displacements that functions of the user's see at a solution, by their names."""
+    balance = problem.balance(solution.samples)
+    samples = balance.displacements(solution.unknowns) @ balance.series.synthesis.T
+    return {element.name: samples[rows] for rows, element in problem.lowered.functions}

@@ -129,14 +129,10 @@ def test_figures_have_the_points_of_both_methods():
     assert figures["decay"].data[2].name == "band-pass filter"
 
 
-def test_a_beat_that_does_not_separate_is_refused_or_stated():
+def test_a_beat_that_does_not_separate_is_stated():
     modes = ((FREQUENCY, 0.02, 1.0), (1.03 * FREQUENCY, 0.02, 0.8))
-    try:
-        result = da.ring_down(record(*modes, noise=1e-4, duration=2.0), FREQUENCY, quantity="displacement")
-    except DataError as error:
-        assert "do not separate" in str(error)
-    else:
-        assert {"not-one-mode", "methods-differ", "start-not-free"} & {finding.code for finding in result.findings}
+    result = da.ring_down(record(*modes, noise=1e-4, duration=2.0), FREQUENCY, quantity="displacement")
+    assert {"not-one-mode", "methods-differ", "start-not-free"} & {finding.code for finding in result.findings}
 
 
 @pytest.mark.parametrize(
@@ -191,11 +187,11 @@ def test_a_record_that_cannot_be_used_is_refused(data, how, kind, sentence):
 def test_clipped_and_missing_samples_are_refused():
     times, values = decaying((FREQUENCY, DAMPING, 1.0))
     clipped = da.Measurements.of(times, {"tip": np.clip(values, -0.8, 0.8)})
-    with pytest.raises(DataError, match="of 'tip' are clipped at 0.8, the first at 0 s"):
+    with pytest.raises(DataError, match=r"of 'tip' are clipped at 0\.8, the first at 0 s"):
         da.ring_down(clipped, quantity="displacement")
     values[100] = np.nan
     missing = da.Measurements.of(times, {"tip": values}, missing="leave-out")
-    with pytest.raises(DataError, match="the decay has 1 missing sample, the first at 0.1 s"):
+    with pytest.raises(DataError, match=r"the decay has 1 missing sample, the first at 0\.1 s"):
         da.ring_down(missing, quantity="displacement")
 
 

@@ -15,6 +15,8 @@ from dalembert.tables import Table, cells, counted, labelled, percent, shown
 
 OVERLAP = 4
 """Windows that a sample lies in."""
+UNUSUAL = 3.0
+"""Deviation over the median one from which a point is no data of a model."""
 
 Points = Annotated[np.ndarray, Over("point")]
 
@@ -124,10 +126,12 @@ class RingDown(Result):
     def measurements(self) -> Measurements:
         """Frequency and damping ratio over the amplitude, with mean standard deviations, as data of a model.
 
-        Points of windows that overlap share noise; each n-th point is returned, so that windows touch.
+        Points of windows that overlap share noise; each fourth point is returned, so that windows touch. Points whose
+        deviation is more than three times the median one are left out.
         """
-        order = np.argsort(self.amplitudes)
-        rows = order[::OVERLAP]
+        sizes = self.damping_deviations / np.median(self.damping_deviations)
+        rows = np.flatnonzero(sizes <= UNUSUAL)[::OVERLAP]
+        rows = rows[np.argsort(self.amplitudes[rows])]
         along = Coordinate("amplitude", self.unit, self.amplitudes[rows])
         deviations = {
             "frequency": float(np.sqrt(np.mean(self.frequency_deviations[rows] ** 2))),

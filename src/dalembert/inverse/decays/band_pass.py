@@ -10,8 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import firwin, oaconvolve
 
+from dalembert.errors import DataError
 from dalembert.inverse.decays.decay_record import DecayRecord
-from dalembert.inverse.decays.window_fit import Phasors
+from dalembert.inverse.decays.record_windows import Rates
+from dalembert.inverse.decays.sensors import Phasors
 
 HALF_BAND = 0.5
 """Half of the width of the band, as part of the frequency of the mode."""
@@ -50,6 +52,21 @@ class AnalyticSignal:
             slopes[point] = total / sum_of_weights
         return slopes
 
+    def rates(self, frequency: float) -> Rates:
+        """Rates over time of a mode near a frequency, Hz, from windows of four periods.
+
+        Raises
+        ------
+        DataError
+            Where the filter leaves no such window.
+        """
+        half = 2 / frequency
+        middles = np.arange(self.times[0] + half, self.times[-1] - half, half / 4)
+        if len(middles) < 2:
+            raise DataError("ring_down: the free decay is too short for a band-pass filter. Record for longer")
+        slopes = self.slopes(middles, np.full(len(middles), 0.999 * half), 2, np.ones(self.logarithms.shape[1]))
+        return Rates(middles, slopes[None])
+
 
 def analytic_signal(record: DecayRecord, frequency: float, half_band: float = HALF_BAND) -> AnalyticSignal:
     """The analytic signal of the band about a frequency, Hz, where the filter lies within the record."""
@@ -64,14 +81,9 @@ def analytic_signal(record: DecayRecord, frequency: float, half_band: float = HA
     for channel, order in enumerate(record.orders):
         if order:
             # A velocity is the displacement times -σ + iω, an acceleration that once more.
-            rate = np.gradient(logs[:, channel], record.step)
-            logs[:, channel] -= order * np.log(_smoothed(rate, reach))
+            # The rate is averaged over a quarter of the filter to each side.
+            half = max(reach // 2, 1)
+            kernel = np.hanning(2 * half + 3)[1:-1]
+            rates = np.pad(np.gradient(logs[:, channel], record.step), half, mode="edge")
+            logs[:, channel] -= order * np.log(np.convolve(rates, kernel / kernel.sum(), mode="valid"))
     return AnalyticSignal(times, logs)
-
-
-def _smoothed(rates: np.ndarray, reach: int) -> np.ndarray:
-    """Rates (samples,) averaged over a period and a half to each side."""
-    half = max(reach // 2, 1)
-    kernel = np.hanning(2 * half + 3)[1:-1]
-    padded = np.pad(rates, half, mode="edge")
-    return np.convolve(padded, kernel / kernel.sum(), mode="valid")

@@ -37,7 +37,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
-from dalembert.inverse.decays.window_fit import Phasors
+from dalembert.inverse.decays.sensors import Phasors
 
 SLIDERS = 60
 """Sliders of the law, whose slips lie between a third of the least amplitude and the largest."""
@@ -83,7 +83,8 @@ class EquivalentLaw:
     def slopes_at(self, places: ArrayLike) -> Phasors:
         """The same at logarithms of amplitudes."""
         logs, omega, sigma = self._curves
-        return -np.interp(places, logs, sigma) + 1j * np.interp(places, logs, omega)
+        points = np.asarray(places, dtype=float)
+        return -np.interp(points, logs, sigma) + 1j * np.interp(points, logs, omega)
 
     def periodic(self, amplitudes: np.ndarray, slopes: Phasors) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies ω and damping ratios (points,) of periodic motions, from −σ + iω of a decay at amplitudes."""
@@ -139,7 +140,8 @@ class _Terms:
         for _ in range(ROUNDS):
             lost = law.viscous * stiffness / omega + self.lost @ law.stiffnesses
             sigma = lost * omega / (2 * self.energy_slope(law))
-            acceleration = _acceleration(self.sizes, sigma)
+            # ä/a = σ² - dσ/dt with dσ/dt = -σ dσ/d ln a.
+            acceleration = sigma**2 + sigma * np.gradient(sigma, np.log(self.sizes))
             squares = stiffness + sigma / omega * (self.lag @ law.stiffnesses) + acceleration - law.viscous * sigma
             omega = np.sqrt(np.maximum(squares, np.finfo(float).tiny))
         return omega, sigma
@@ -151,10 +153,38 @@ class _Terms:
         rates = np.interp(np.log(self.sizes), logs, sigma)
         return rates**2 + rates * np.interp(np.log(self.sizes), logs, change)
 
-
-def _acceleration(sizes: np.ndarray, sigma: np.ndarray) -> np.ndarray:
-    # ä/a = σ² - dσ/dt with dσ/dt = -σ dσ/d ln a.
-    return sigma**2 + sigma * np.gradient(sigma, np.log(sizes))
+    def fit(
+        self, law: EquivalentLaw, omega: np.ndarray, sigma: np.ndarray, scales: np.ndarray, penalty: float
+    ) -> EquivalentLaw:
+        """The law by least squares, with terms of second order from a law before."""
+        acceleration = self.acceleration(law) if law.viscous or law.stiffnesses.any() else np.zeros(len(omega))
+        decrement = sigma / omega
+        mean = float(np.mean(omega**2))
+        stiffness = np.column_stack([self.elastic, -sigma, self.in_phase + decrement[:, None] * self.lag])
+        energy = np.column_stack(
+            [
+                -2 * decrement[:, None] * self.stored,
+                (omega**2 + sigma**2) / omega,
+                self.lost - 2 * decrement[:, None] * self.stuck,
+            ]
+        )
+        matrix = np.vstack([stiffness * scales[:, :1], energy * scales[:, 1:]])
+        right = np.concatenate([(omega**2 - acceleration) * scales[:, 0], np.zeros(len(omega))])
+        # Unknowns in parts of the mean square of ω, c in parts of its root; nonlinear springs of both signs.
+        units = np.full(matrix.shape[1], mean)
+        units[ELASTIC] = np.sqrt(mean)
+        held = np.sqrt(penalty) * np.eye(len(units))
+        held[0] = held[ELASTIC] = 0.0
+        design = np.vstack([matrix * units, held])
+        both = np.column_stack([design, -design[:, 1:ELASTIC]])
+        numbers = nnls(both, np.concatenate([right, np.zeros(len(units))]), maxiter=50 * both.shape[1])[0]
+        result = numbers[: len(units)].copy()
+        result[1:ELASTIC] -= numbers[len(units) :]
+        result = result * units
+        misfits = np.column_stack([omega**2 - acceleration - stiffness @ result, -(energy @ result)]) * scales
+        return EquivalentLaw(
+            law.amplitudes, law.slips, result[ELASTIC + 1 :], result[:ELASTIC], float(result[ELASTIC]), misfits
+        )
 
 
 def equivalent_law(amplitudes: np.ndarray, slopes: Phasors, deviations: np.ndarray) -> EquivalentLaw:
@@ -171,42 +201,8 @@ def equivalent_law(amplitudes: np.ndarray, slopes: Phasors, deviations: np.ndarr
     for penalty in PENALTIES:
         law = none
         for _ in range(ROUNDS):
-            law = _step(law, terms, omega, sigma, scales, penalty)
+            law = terms.fit(law, omega, sigma, scales, penalty)
         fitted[penalty] = law
     sizes = {penalty: float(np.sqrt(np.mean(law.misfits**2))) for penalty, law in fitted.items()}
     enough = ENOUGH * max(min(sizes.values()), 1.0)
     return fitted[next(penalty for penalty in PENALTIES if sizes[penalty] <= enough)]
-
-
-def _step(
-    law: EquivalentLaw, terms: _Terms, omega: np.ndarray, sigma: np.ndarray, scales: np.ndarray, penalty: float
-) -> EquivalentLaw:
-    """The law by least squares, with terms of second order from a law before."""
-    acceleration = terms.acceleration(law) if law.viscous or law.stiffnesses.any() else np.zeros(len(omega))
-    decrement = sigma / omega
-    mean = float(np.mean(omega**2))
-    stiffness = np.column_stack([terms.elastic, -sigma, terms.in_phase + decrement[:, None] * terms.lag])
-    energy = np.column_stack(
-        [
-            -2 * decrement[:, None] * terms.stored,
-            (omega**2 + sigma**2) / omega,
-            terms.lost - 2 * decrement[:, None] * terms.stuck,
-        ]
-    )
-    matrix = np.vstack([stiffness * scales[:, :1], energy * scales[:, 1:]])
-    right = np.concatenate([(omega**2 - acceleration) * scales[:, 0], np.zeros(len(omega))])
-    # Unknowns in parts of the mean square of ω, c in parts of its root; nonlinear springs of both signs.
-    units = np.full(matrix.shape[1], mean)
-    units[ELASTIC] = np.sqrt(mean)
-    held = np.sqrt(penalty) * np.eye(len(units))
-    held[0] = held[ELASTIC] = 0.0
-    design = np.vstack([matrix * units, held])
-    both = np.column_stack([design, -design[:, 1:ELASTIC]])
-    numbers = nnls(both, np.concatenate([right, np.zeros(len(units))]), maxiter=50 * both.shape[1])[0]
-    result = numbers[: len(units)].copy()
-    result[1:ELASTIC] -= numbers[len(units) :]
-    result = result * units
-    misfits = np.column_stack([omega**2 - acceleration - stiffness @ result, -(energy @ result)]) * scales
-    return EquivalentLaw(
-        law.amplitudes, law.slips, result[ELASTIC + 1 :], result[:ELASTIC], float(result[ELASTIC]), misfits
-    )

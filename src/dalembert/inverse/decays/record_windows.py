@@ -10,7 +10,8 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from dalembert.inverse.decays.decay_record import DecayRecord
-from dalembert.inverse.decays.window_fit import HARMONICS, OTHERS, Phasors, Sensors, Window, WindowFit, fit_window
+from dalembert.inverse.decays.sensors import Phasors, Sensors
+from dalembert.inverse.decays.window_fit import HARMONICS, OTHERS, Window, WindowFit, fit_window
 
 
 class Place(NamedTuple):

@@ -23,7 +23,7 @@ from dalembert.inverse.decays.record_windows import (
     half_length,
 )
 from dalembert.inverse.decays.ring_down_result import OVERLAP
-from dalembert.inverse.decays.window_fit import Phasors
+from dalembert.inverse.decays.sensors import Phasors
 
 DEGREES = (2, 4)
 """Degrees of the polynomials of phase and logarithm of the amplitude that are tried."""
@@ -64,14 +64,14 @@ class Suited:
 def suited_windows(decay: FreeDecay, law: EquivalentLaw, first: WindowEstimates) -> Suited:
     """Estimates of a decay in the windows that suit its noise, with the law and the estimates of a first look."""
     rates = decay.rates.with_first(*law_rates(decay.record, law, first))
-    model = _model(decay, rates, first)
-    options = list(_options(decay, model, rates, decay.periods / 3))
+    model = law_decay(decay, rates, first)
+    options = list(options_of(decay, model, rates, decay.periods / 3))
     if not options:
         raise DataError(
             f"ring_down: the mode at {decay.frequency:.6g} Hz and one near it do not separate in a record of "
             f"{decay.record.duration:.3g} s. Record for longer, or measure where only one of them moves"
         )
-    places, bias = zip(*_places(decay.record, rates, options), strict=True)
+    places, bias = zip(*suited_places(decay.record, rates, options), strict=True)
     estimates = estimate(decay.record, places, rates, decay.sensors, decay.harmonics)
     by_middle = dict(zip([place.middle for place in places], bias, strict=True))
     return Suited(estimates, np.array([by_middle[middle] for middle in estimates.middles]))
@@ -94,7 +94,7 @@ def law_rates(record: DecayRecord, law: EquivalentLaw, first: WindowEstimates) -
     return times, law.slopes_at(logs)
 
 
-def _model(decay: FreeDecay, rates: Rates, first: WindowEstimates) -> DecayRecord:
+def law_decay(decay: FreeDecay, rates: Rates, first: WindowEstimates) -> DecayRecord:
     """The record of the law's decay, without noise, at all sensors."""
     record, middle = decay.record, len(first) // 2
     values = np.zeros(record.values.shape)
@@ -114,7 +114,7 @@ def _model(decay: FreeDecay, rates: Rates, first: WindowEstimates) -> DecayRecor
     return DecayRecord(record.start, record.step, values, record.channels, record.orders)
 
 
-def _options(decay: FreeDecay, model: DecayRecord, rates: Rates, longest: float) -> Iterator[Option]:
+def options_of(decay: FreeDecay, model: DecayRecord, rates: Rates, longest: float) -> Iterator[Option]:
     for degree in DEGREES:
         lengths = [length for length in LENGTHS if length >= decay.shortest]
         for periods in lengths:
@@ -136,7 +136,7 @@ def _options(decay: FreeDecay, model: DecayRecord, rates: Rates, longest: float)
                 break
 
 
-def _places(record: DecayRecord, rates: Rates, options: list[Option]) -> Iterator[tuple[Place, float]]:
+def suited_places(record: DecayRecord, rates: Rates, options: list[Option]) -> Iterator[tuple[Place, float]]:
     """Yield windows that suit, from the begin of a record to its end, with their bias.
 
     Shorter ones from the begin of the record come first: they reach the largest amplitudes.

@@ -13,15 +13,13 @@ Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares pro
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
-Phasors = NDArray[np.complexfloating[Any, Any]]
-"""Complex numbers of any shape."""
+from dalembert.inverse.decays.sensors import Phasors, Sensors
+
 STEPS = 30
 """Gauss–Newton steps of a fit at most."""
 SETTLED, ROUGHLY = 1e-6, 1e-2
@@ -38,24 +36,6 @@ HARMONICS = (2, 3, 5)
 
 
 @dataclass(frozen=True)
-class Sensors:
-    """What sensors see. ``orders``: derivatives by time of the displacement, 0, 1 or 2; ``deviations`` of their noise;
-    both (channels,).
-    """
-
-    orders: tuple[int, ...]
-    deviations: np.ndarray
-
-    @cached_property
-    def groups(self) -> dict[int, list[int]]:
-        """Channels by what they see: those of a group have the same columns."""
-        return {
-            order: [channel for channel, seen in enumerate(self.orders) if seen == order]
-            for order in sorted({*self.orders})
-        }
-
-
-@dataclass(frozen=True)
 class Window:
     """Samples of a window: ``times`` (samples,) from its middle, s; ``values`` (samples, channels)."""
 
@@ -67,6 +47,34 @@ class Window:
     def places(self) -> np.ndarray:
         """From −1 to 1, (samples,)."""
         return self.times / self.half
+
+    def terms(self, exponent: Phasors, order: int, degree: int) -> Iterator[Phasors]:
+        """Yield D^order (x^d e^ρ) for d = 0 to the degree, (samples,), with D the derivative by time."""
+        places, rate = self.places, polynomial.polyder(exponent)
+        growth = np.exp(polynomial.polyval(places, exponent))
+        for power in range(degree + 1):
+            factor = np.zeros(power + 1, dtype=complex)
+            factor[power] = 1.0
+            for _ in range(order):
+                factor = polynomial.polyadd(polynomial.polyder(factor), polynomial.polymul(factor, rate)) / self.half
+            yield polynomial.polyval(places, factor) * growth
+
+    def columns(
+        self, exponents: Phasors, terms: list[list[Phasors]], harmonics: tuple[int, ...]
+    ) -> Iterator[np.ndarray]:
+        """Yield the columns of the linear numbers: modes, harmonics of the first with a slope, mean and drift."""
+        places = self.places
+        for mode in terms:
+            yield mode[0].real
+            yield -mode[0].imag
+        rho = polynomial.polyval(places, exponents[0])
+        for harmonic in harmonics:
+            wave = np.exp(rho.real + 1j * harmonic * rho.imag)
+            for factor in (1.0, places):
+                yield factor * wave.real
+                yield factor * wave.imag
+        yield np.ones_like(places)
+        yield places
 
 
 @dataclass(frozen=True)
@@ -110,6 +118,17 @@ class WindowFit:
         """Complex displacements (channels,) at a place."""
         return self.amplitudes[mode] * np.exp(polynomial.polyval(place, self.exponents[mode]))
 
+    @property
+    def freedom(self) -> float:
+        """Samples less the numbers that are fitted to each channel."""
+        linear = next(iter(self.bases.values())).shape[1]
+        samples, channels = self.residuals.shape
+        return max(samples - linear - len(self.gains) / channels, 1.0)
+
+    def misfit_over(self, mode: int) -> float:
+        """Squares of the residuals over those of the amplitude of a mode."""
+        return float(np.sum(self.residuals**2) / np.sum(np.abs(self.amplitudes[mode]) ** 2))
+
     def best_place(self, deviations: np.ndarray) -> float:
         """The place at which frequency and decay rate together have the least variance, near the middle of the energy.
 
@@ -133,20 +152,11 @@ def fit_window(
         step = at.step()
         if np.abs(step[0]).max() < SETTLED and np.abs(step[1:]).max(initial=0.0) < ROUGHLY:
             return at.result(True)
-        best = _shortened(at, step)
+        best = at.shortened(step)
         if best is None:
             break
         at = best
     return at.result(False)
-
-
-def _shortened(at: "_Trial", step: np.ndarray) -> "_Trial | None":
-    """The trial after a step, or after a part of it that does not raise the misfit."""
-    for halving in range(HALVINGS):
-        trial = _Trial.of(at.window, at.exponents + 0.5**halving * step, at.sensors, at.harmonics)
-        if trial.misfit <= at.misfit * (1 + RISE):
-            return trial
-    return None
 
 
 @dataclass(frozen=True)
@@ -174,10 +184,9 @@ class _Trial:
         bases = {}
         for order, members in sensors.groups.items():
             terms = [
-                list(_terms(window, exponent, order, degree))
-                for exponent, degree in zip(exponents, degrees, strict=True)
+                list(window.terms(exponent, order, degree)) for exponent, degree in zip(exponents, degrees, strict=True)
             ]
-            columns = np.stack(list(_columns(window, exponents, terms, harmonics)), axis=1)
+            columns = np.stack(list(window.columns(exponents, terms, harmonics)), axis=1)
             basis, triangle = np.linalg.qr(columns)
             numbers = solve_triangular(triangle, basis.T @ window.values[:, members])
             residuals[:, members] = window.values[:, members] - columns @ numbers
@@ -185,7 +194,8 @@ class _Trial:
             for place, channel in enumerate(members):
                 phasors = numbers[0 : 2 * modes : 2, place] + 1j * numbers[1 : 2 * modes : 2, place]
                 amplitudes[:, channel] = phasors
-                slopes = _slopes(phasors, terms)
+                waves = [size * term for size, mode in zip(phasors, terms, strict=True) for term in mode[1:]]
+                slopes = np.stack([part for wave in waves for part in (wave.real, -wave.imag)])
                 slopes -= (slopes @ basis) @ basis.T
                 projected[channel] = slopes / sensors.deviations[channel]
         return cls(window, exponents, sensors, harmonics, amplitudes, residuals, projected, bases)
@@ -195,13 +205,9 @@ class _Trial:
         return float(np.sum((self.residuals / self.sensors.deviations) ** 2))
 
     @cached_property
-    def _flat(self) -> np.ndarray:
-        """Derivatives of all channels one after the other, (coefficients, channels · samples)."""
-        return self.projected.transpose(1, 0, 2).reshape(self.projected.shape[1], -1)
-
-    @cached_property
     def _factors(self) -> tuple[np.ndarray, np.ndarray]:
-        return np.linalg.qr(self._flat.T)
+        # Derivatives of all channels below each other, (channels · samples, coefficients).
+        return np.linalg.qr(self.projected.transpose(0, 2, 1).reshape(-1, self.projected.shape[1]))
 
     @cached_property
     def _pseudo_inverse(self) -> np.ndarray:
@@ -219,6 +225,14 @@ class _Trial:
             first += 2 * degree
         return step
 
+    def shortened(self, step: Phasors) -> "_Trial | None":
+        """The trial after a step, or after a part of it that does not raise the misfit."""
+        for halving in range(HALVINGS):
+            trial = _Trial.of(self.window, self.exponents + 0.5**halving * step, self.sensors, self.harmonics)
+            if trial.misfit <= self.misfit * (1 + RISE):
+                return trial
+        return None
+
     def result(self, converged: bool) -> WindowFit:
         samples, channels = self.residuals.shape
         gains = self._pseudo_inverse.reshape(-1, channels, samples) / self.sensors.deviations[:, None]
@@ -232,43 +246,3 @@ def _degrees(exponents: np.ndarray) -> list[int]:
     """Degree of the polynomial of each mode."""
     degree = exponents.shape[1] - 1
     return [degree, *[min(degree, OTHERS)] * (len(exponents) - 1)]
-
-
-def _terms(window: Window, exponent: Phasors, order: int, degree: int) -> Iterator[Phasors]:
-    """Yield D^order (x^d e^ρ) for d = 0 to the degree, (samples,), with D the derivative by time."""
-    places, rate = window.places, polynomial.polyder(exponent)
-    growth = np.exp(polynomial.polyval(places, exponent))
-    for power in range(degree + 1):
-        factor = np.zeros(power + 1, dtype=complex)
-        factor[power] = 1.0
-        for _ in range(order):
-            factor = polynomial.polyadd(polynomial.polyder(factor), polynomial.polymul(factor, rate)) / window.half
-        yield polynomial.polyval(places, factor) * growth
-
-
-def _columns(
-    window: Window, exponents: Phasors, terms: list[list[Phasors]], harmonics: tuple[int, ...]
-) -> Iterator[np.ndarray]:
-    """Yield the columns of the linear numbers: modes, harmonics of the first with a slope, mean and drift."""
-    places = window.places
-    for mode in terms:
-        yield mode[0].real
-        yield -mode[0].imag
-    rho = polynomial.polyval(places, exponents[0])
-    for harmonic in harmonics:
-        wave = np.exp(rho.real + 1j * harmonic * rho.imag)
-        for factor in (1.0, places):
-            yield factor * wave.real
-            yield factor * wave.imag
-    yield np.ones_like(places)
-    yield places
-
-
-def _slopes(amplitudes: Phasors, terms: list[list[Phasors]]) -> np.ndarray:
-    """Derivatives of a channel by real and imaginary part of each coefficient, (coefficients, samples)."""
-    rows = []
-    for amplitude, mode in zip(amplitudes, terms, strict=True):
-        for term in mode[1:]:
-            wave = amplitude * term
-            rows += [wave.real, -wave.imag]
-    return np.stack(rows)

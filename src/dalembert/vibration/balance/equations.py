@@ -104,6 +104,12 @@ class Equations:
             )
         return self._balances[samples]
 
+    def seen_by_functions(self, solution: Solution) -> dict[str, np.ndarray]:
+        """Samples of the displacements that functions of the user's see at a solution, by their names."""
+        balance = self.balance(solution.samples)
+        samples = balance.displacements(solution.unknowns) @ balance.series.synthesis.T
+        return {element.name: samples[rows] for rows, element in self.lowered.functions}
+
     def stiffness_balance(self, samples: int) -> Balance:
         """The same where the structure is written by dynamic stiffnesses."""
         balance = self.balance(samples)

@@ -179,7 +179,7 @@ class BackboneResponse(StructureResponse):
         equations, motions = self._followed(vector)
         lowered = equations.problem.lowered
         moved = [self._perturbed(vector, column, lowered) for column in range(len(vector))]
-        self._check(vector, lambda: _seen_by_functions(equations, motions[-1]))
+        self._check(vector, lambda: equations.seen_by_functions(motions[-1]))
         values = np.array([self._of(motion.omega, motion.growth) for motion in motions])
         jacobian = np.empty((*values.shape, len(vector)))
         for number, motion in enumerate(motions):
@@ -191,11 +191,3 @@ class BackboneResponse(StructureResponse):
             }
             jacobian[number] = [changes[name] for name in self.channel_names]
         return values, jacobian / self.parameters.scale
-
-
-def _seen_by_functions(equations: ModeEquations, motion: FreeMotion) -> dict[str, np.ndarray]:
-    """Samples of the displacements that functions of the user's see in a motion, by their names."""
-    lowered = equations.problem.lowered
-    seen = lowered.matrix @ equations.displacements(motion)
-    samples = seen @ equations.series(motion.samples).synthesis.T
-    return {element.name: samples[rows] for rows, element in lowered.functions}

@@ -119,6 +119,12 @@ class ModeEquations(ABC):
             pushes += step_of(with_static_forces(moved).load_coefficients(series, motion.omega))
         return pushes
 
+    def seen_by_functions(self, motion: FreeMotion) -> dict[str, np.ndarray]:
+        """Samples of the displacements that functions of the user's see in a motion, by their names."""
+        lowered = self.problem.lowered
+        samples = lowered.matrix @ self.displacements(motion) @ self.series(motion.samples).synthesis.T
+        return {element.name: samples[rows] for rows, element in lowered.functions}
+
     def with_method(self, method: HarmonicBalance) -> "ModeEquations":
         """Return the equations with other harmonics."""
         return replace(self, problem=self.problem.with_method(method))

@@ -171,7 +171,7 @@ class FrequencyResponse(StructureResponse):
         jacobian = np.empty((*values.shape, len(vector)))
         perturbed = [self._perturbed(vector, column, problem.lowered) for column in range(len(vector))]
         for number, solution in enumerate(self._solutions(problem)):
-            self._check(vector, partial(_seen_by_functions, problem, solution))
+            self._check(vector, partial(problem.seen_by_functions, solution))
             response = response_of(problem, solution)
             slopes = sensitivities(problem, solution, perturbed)
             for channel, (row, size) in enumerate(places):
@@ -204,10 +204,3 @@ class FrequencyResponse(StructureResponse):
         places = self._places(problem.lowered)
         responses = (response_of(problem, solution) for solution in self._solutions(problem))
         return np.array([[size.of(response[row]) for row, size in places] for response in responses])
-
-
-def _seen_by_functions(problem: Equations, solution: Solution) -> dict[str, np.ndarray]:
-    """Samples of the displacements that functions of the user's see at a solution, by their names."""
-    balance = problem.balance(solution.samples)
-    samples = balance.displacements(solution.unknowns) @ balance.series.synthesis.T
-    return {element.name: samples[rows] for rows, element in problem.lowered.functions}

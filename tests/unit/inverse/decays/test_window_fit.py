@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dalembert.inverse.decays.window_fit import Sensors, Window, fit_window
+from dalembert.inverse.decays.sensors import Sensors
+from dalembert.inverse.decays.window_fit import Window, fit_window
 
 OMEGA, SIGMA, BEND = 60.0, 1.5, 4.0  # rad/s, 1/s, rad/s^2
 HALF = 0.3

@@ -15,7 +15,7 @@ import dalembert as da
 from ring_downs import SEVERAL_SLIDERS
 
 TABLE = Path(__file__).parent / "verification" / "references" / "ring_down_coverage.json"
-SEEDS, FIRST, NOISE = 400, 2000, 0.02
+SEEDS, FIRST, NOISE = 400, 2000, 0.12
 LEVELS = (0.7, 0.35, 0.18, 0.1)
 """Parts of the first amplitude, near which an interval is looked at."""
 NAMES = tuple(f"{name} at {level:g}" for level in LEVELS for name in ("frequency", "damping"))

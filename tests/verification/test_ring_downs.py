@@ -78,7 +78,7 @@ def test_deviations_are_near_the_bound_of_cramer_and_rao(record_evidence):
         spreads.append(values[:, 0].std(ddof=1))
         # Fisher information of ln a, φ, σ and ω of a wave a e^{-σt} cos(ωt + φ) in the samples of the window.
         half = np.pi * results[0].periods[point] / (2 * np.pi * results[0].decay_frequencies[point])
-        middle = results[0].times[point] + 0.0
+        middle = results[0].times[point]
         step = LINEAR.decay[0][1]
         local = np.arange(-half, half, step)
         size = np.exp(-LINEAR.damping / 2 * (middle + local))

@@ -22,7 +22,7 @@ def filtered(data: Recorded, cutoff: float) -> Recorded:
         raise DataError(f"the cutoff frequency is {cutoff} Hz; expected a positive number")
     values, gains = np.full(data.values.shape, np.nan), np.ones(len(data.channels))
     for column, (present, known) in enumerate(zip(data.present.T, data.continuous.T, strict=True)):
-        rate = 1.0 / even_spacing(along[present])
+        rate = 1.0 / _spacing(along[present])
         if cutoff >= rate / 2:
             raise DataError(
                 f"the cutoff frequency is {cutoff:g} Hz and the sampling rate {rate:.6g} Hz; expected less than half "
@@ -53,7 +53,7 @@ def decimated(data: Recorded, factor: int, cutoff: float | None) -> Recorded:
         raise DataError(f"every {factor}-th sample; expected a whole number of at least 1")
     if factor == 1 and cutoff is None:
         return data
-    steps = [even_spacing(along[present]) for present in data.present.T]
+    steps = [_spacing(along[present]) for present in data.present.T]
     rate = min(1.0 / step for step in steps) / factor
     if cutoff is not None and cutoff > rate / 2:
         raise DataError(
@@ -74,7 +74,7 @@ def is_even(data: Record) -> bool:
     """Return whether the samples of each channel are evenly spaced between gaps, as filters need them."""
     try:
         for present in data.present.T:
-            even_spacing(data.coordinate.values[present])
+            _spacing(data.coordinate.values[present])
     except DataError:
         return False
     return True
@@ -95,7 +95,7 @@ def _numbers(along: np.ndarray, present: np.ndarray, step: float) -> np.ndarray:
     return numbers
 
 
-def even_spacing(times: np.ndarray) -> float:
+def _spacing(times: np.ndarray) -> float:
     """Distance of even samples, s, between gaps."""
     apart = np.diff(times)
     if len(apart) < 1:

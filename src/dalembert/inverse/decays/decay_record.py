@@ -14,8 +14,11 @@ PERIODS = 12
 
 @dataclass(frozen=True)
 class DecayRecord:
-    """Free decay at evenly spaced times. ``start``: time of the first sample; ``values`` (samples, channels);
-    ``orders`` (channels,): derivatives by time that the sensors see.
+    """Free decay at evenly spaced times.
+
+    ``start``: time of the first sample; ``values`` (samples, channels); ``orders`` (channels,): derivatives by time
+    that the sensors see; ``units`` of their displacements; ``passed``: deviation of white noise with the power of that
+    at the mode, over the deviation before the record was thinned.
     """
 
     start: float
@@ -23,6 +26,8 @@ class DecayRecord:
     values: np.ndarray
     channels: tuple[str, ...]
     orders: tuple[int, ...]
+    units: tuple[str, ...] = ()
+    passed: float = 1.0
 
     @cached_property
     def times(self) -> np.ndarray:
@@ -44,13 +49,22 @@ class DecayRecord:
 
     def thinned(self, frequency: float) -> "DecayRecord":
         """The record with at most ``MOST`` samples of a period of the mode, after a low-pass filter without delay."""
-        factor = int(1 / (self.step * frequency * MOST))
+        factor = int(np.ceil(1 / (self.step * frequency * MOST) - 1e-9))
         if factor < 2:
             return self
         # Half of the new rate is `MOST`/2 periods: the filter is flat over the mode and its harmonics.
         taps = np.asarray(firwin(16 * factor + 1, 0.8 / factor, window="blackman"))
+        phases = 2 * np.pi * frequency * self.step * (np.arange(len(taps)) - len(taps) // 2)
+        gain = float(taps @ np.cos(phases))
         slow = oaconvolve(self.values, taps[:, None], mode="valid", axes=0)[::factor]
-        return replace(self, start=self.start + 8 * factor * self.step, step=factor * self.step, values=slow)
+        return replace(
+            self,
+            start=self.start + 8 * factor * self.step,
+            step=factor * self.step,
+            # The gain of the filter at the mode; its noise has the same density at fewer samples.
+            values=slow / gain,
+            passed=self.passed / np.sqrt(factor),
+        )
 
     def largest(self, frequency: float) -> float:
         """Time at which the amplitude of a mode of a frequency, Hz, is largest, by the mean square over a period."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dalembert.errors import DataError
-from dalembert.inverse.decays.band_pass import AnalyticSignal
+from dalembert.inverse.decays.band_pass import AnalyticSignal, analytic_signal
 from dalembert.inverse.decays.decay_record import PERIODS, DecayRecord
 from dalembert.inverse.decays.record_windows import Place, Rates, WindowEstimates, estimate, even_places, half_length
 from dalembert.inverse.decays.sensors import Sensors
@@ -19,6 +19,8 @@ CLEAN = 5e-3
 """Residual of a window, as part of the amplitude, that is no sign of the hammer's contact or of other modes."""
 END = 3.0
 """Amplitude in deviations of the noise of the band at which a decay ends."""
+NEAR = 0.2
+"""Relative distance from an expected frequency within which the mode is looked for."""
 SEPARATE = 1.5
 """Periods of the beat of two modes that a window must have."""
 
@@ -75,13 +77,40 @@ class FreeDecay:
             decay = replace(decay, sensors=Sensors(decay.record.orders, np.maximum(levels, floor)))
         return decay
 
+    def beginning_with(self, expected: float) -> "FreeDecay":
+        """The same with the mode near an expected frequency, Hz, as the first.
+
+        Raises
+        ------
+        DataError
+            Where no mode of the decay is near it.
+        """
+        frequencies = self.rates.slopes[:, 0].imag / (2 * np.pi)
+        frequencies[0] = self.frequency
+        away = np.abs(frequencies / expected - 1)
+        nearest = int(np.argmin(away))
+        if away[nearest] > NEAR:
+            raise DataError(
+                f"ring_down: no mode is near {expected:.6g} Hz; the decay is that of {self.frequency:.6g} Hz. Give "
+                "another frequency, or measure where this mode moves more"
+            )
+        if not nearest:
+            return self
+        order = [nearest, *(mode for mode in range(len(frequencies)) if mode != nearest)]
+        ends = (np.inf, *(self.rates.ends[mode] for mode in order[1:]))
+        rates = Rates(self.rates.times, self.rates.slopes[order], ends)
+        decay = replace(self, rates=rates, harmonics=HARMONICS)
+        return replace(decay, signal=analytic_signal(self.record, expected, 1 / max(decay.shortest, 2.0)))
+
     def ended(self) -> "FreeDecay":
         """The decay to where its amplitude leaves the noise of the band."""
         signal, record = self.signal, self.record
-        sizes = np.exp(signal.logarithms.real).sum(axis=1)
-        # The level to which the amplitude falls at last: the noise of the band, or the end of the decay itself.
-        tail = sizes[-max(len(sizes) // 10, 1) :]
-        noise = float(np.sqrt(np.mean(tail**2)))
+        # The level to which the amplitude falls at last: the noise of the band, or the end of the decay itself. Of
+        # several sensors, that which falls most.
+        levels = np.exp(signal.logarithms.real)
+        tails = np.sqrt(np.mean(levels[-max(len(levels) // 10, 1) :] ** 2, axis=0))
+        most = int(np.argmax(levels[0] / tails))
+        sizes, noise = levels[:, most], float(tails[most])
         above = np.flatnonzero(sizes > END * noise)
         if not len(above) or noise > sizes[0] / (END * END):
             return self
@@ -102,6 +131,8 @@ class FreeDecay:
         for number in range(STARTS):
             begin = record.start + number * half_period
             half = half_length(self.rates, begin, max(SHORT[0], self.shortest))
+            if number and record.times[-1] - begin < max(2 * half, PERIODS / self.frequency):
+                break
             place = Place(begin + half, half, SHORT[1])
             fits = estimate(record, [place], self.rates, self.sensors, self.harmonics)
             ratios.append(np.inf)

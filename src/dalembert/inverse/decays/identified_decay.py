@@ -17,6 +17,8 @@ BESIDE = 1.0
 """Half of the band of the filter, in parts of a window's frequency that separates the modes."""
 UNCERTAIN = 0.3
 """Relative deviation of the decay rate from which a window says nothing on the damping."""
+BESIDES = 2
+"""Neighbours to each side of a window whose median rate says whether its deviation is small."""
 LOOK = (6.0, 2)
 """Periods and degree of the windows from which the first law comes."""
 ROUNDS = 2
@@ -36,24 +38,36 @@ class IdentifiedDecay:
     covariance: np.ndarray
     band: Phasors
 
+    @property
+    def strengths(self) -> np.ndarray:
+        """Mean amplitudes of the channels over the deviations of their noise, (channels,)."""
+        rates = np.abs(self.estimates.slopes)[:, None] ** np.array(self.decay.record.orders)
+        return np.mean(np.abs(self.estimates.amplitudes) * rates, axis=0) / self.noise
+
+    @property
     def other_modes(self) -> np.ndarray:
-        """Frequencies, Hz, of the other modes of a decay, from the longest window with self."""
+        """Frequencies, Hz, of the other modes, from the longest window with each."""
         result = []
-        for mode in range(1, len(self.decay.rates.slopes)):
-            fits = [fit for fit in self.estimates.fits if len(fit.amplitudes) > mode]
-            longest = max(fits, key=lambda fit: fit.window.half, default=None)
-            slope = self.decay.rates.slopes[mode, 0] if longest is None else longest.slope(0.0, mode)
+        for mode, slopes in enumerate(self.decay.rates.slopes[1:], 1):
+            windows = self.estimates.with_mode(mode)
+            longest = max(windows, key=lambda place: self.estimates.halves[place[0]], default=None)
+            slope = slopes[0] if longest is None else self.estimates.fits[longest[0]].slope(0.0, longest[1])
             result.append(slope.imag / (2 * np.pi))
         return np.array(result)
 
     def amplitude_deviations(self, column: int) -> np.ndarray:
-        """Standard deviations of the amplitudes of a channel: that of a wave of known frequency in white noise."""
-        order = self.decay.record.orders[column]
+        """Standard deviations of the amplitudes of a channel, about: those of a wave of known frequency in white noise,
+        times what the polynomial of the logarithm adds in the middle of a window, 3/2 or 15/8.
+        """
+        order, estimates = self.decay.record.orders[column], self.estimates
         deviations = []
-        for fit, slope in zip(self.estimates.fits, self.estimates.slopes, strict=True):
-            # Energy of the fitted wave for unit amplitude of the displacement, at the middle of the window.
-            growth = np.exp(-2 * -slope.real * fit.window.times)
-            deviations.append(self.noise[column] / np.sqrt(np.sum(growth) * abs(slope) ** (2 * order) / 2))
+        for fit, slope, middle, time in zip(
+            estimates.fits, estimates.slopes, estimates.middles, estimates.times, strict=True
+        ):
+            # Energy of the wave over the square of its amplitude at the time of the estimate.
+            energy = np.sum(np.exp(2 * slope.real * (fit.window.times - (time - middle)))) / 2
+            factor = 1.5 if fit.exponents.shape[1] == 3 else 1.875
+            deviations.append(factor * self.noise[column] / np.sqrt(energy * abs(slope) ** (2 * order)))
         return np.array(deviations)
 
 
@@ -65,11 +79,11 @@ def identified_decay(decay: FreeDecay) -> IdentifiedDecay:
     for _ in range(ROUNDS):
         known = sure_windows(suited, decay.sensors.deviations, decay)
         deviations = np.sqrt(known.estimates.variances(decay.sensors.deviations))
-        law = equivalent_law(
-            np.abs(known.estimates.amplitudes).sum(axis=1),
-            known.estimates.slopes,
-            np.hypot(deviations, known.bias[:, None]),
-        )
+        # The amplitude of the sensor with the least noise for its motion.
+        sizes = np.abs(known.estimates.amplitudes)
+        seen = sizes.mean(axis=0) * (2 * np.pi * decay.frequency) ** np.array(decay.record.orders)
+        size = sizes[:, int(np.argmax(seen / decay.sensors.deviations))]
+        law = equivalent_law(size, known.estimates.slopes, np.hypot(deviations, known.bias[:, None]))
         suited = suited_windows(decay, law, known.estimates)
         decay = replace(
             decay, sensors=replace(decay.sensors, deviations=noise_at_mode(suited.estimates, decay.sensors))
@@ -85,22 +99,32 @@ def identified_decay(decay: FreeDecay) -> IdentifiedDecay:
 
 
 def sure_windows(suited: Suited, noise: np.ndarray, decay: FreeDecay) -> Suited:
-    """The windows that know the decay rate."""
+    """The windows from the first to the last that know the decay rate, by the median rate of their neighbours: a window
+    whose rate is large by chance is not better than others.
+
+    Raises
+    ------
+    DataError
+        Where none does, or the amplitude grows.
+    """
     estimates = suited.estimates
     rates = -estimates.slopes.real
-    sure = (
-        np.sqrt(estimates.variances(noise)[:, 0]) < UNCERTAIN * np.abs(rates) if len(estimates) else np.zeros(0, bool)
+    smooth = np.array(
+        [np.median(rates[max(place - BESIDES, 0) : place + BESIDES + 1]) for place in range(len(estimates))]
     )
-    if not sure.any():
+    deviations = np.sqrt(estimates.variances(noise)[:, 0]) if len(estimates) else np.zeros(0)
+    sure = np.flatnonzero(deviations < UNCERTAIN * np.abs(smooth))
+    if not len(sure):
         fall = 1 - np.exp(-float(np.median(rates)) * decay.record.duration) if len(rates) else 0.0
         raise DataError(
             f"ring_down: the record is too short, or too noisy, for the damping: in its {decay.record.duration:.3g} s "
             f"the amplitude falls by {100 * fall:.2g} %. Record for longer, or hit harder"
         )
-    if np.mean(rates[sure] < 0) > 0.5:
+    if np.median(rates[sure]) < 0:
         raise DataError(
             "ring_down: the amplitude grows. Give the part of the record in which the mode decays, start=..., or look "
             "whether something excites it"
         )
-    rows = sure & (rates > 0)
+    rows = np.zeros(len(estimates), dtype=bool)
+    rows[sure[0] : sure[-1] + 1] = True
     return Suited(estimates.kept(rows), suited.bias[rows])

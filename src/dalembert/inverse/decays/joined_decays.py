@@ -7,21 +7,23 @@ from scipy.linalg import block_diag
 
 import dalembert
 from dalembert.data import Measurements
-from dalembert.errors import require_known
 from dalembert.inverse.decays.equivalent_law import equivalent_law
 from dalembert.inverse.decays.identified_decay import IdentifiedDecay
 from dalembert.inverse.decays.ring_down_findings import record_findings, result_findings
 from dalembert.inverse.decays.ring_down_result import RingDown
 from dalembert.inverse.decays.sensors import Phasors
 
+CLEAR = 0.1
+"""Strength of a channel over that of the best from which it may be the reference."""
+ALIKE = 0.01
+"""Relative difference of the frequencies of one mode in several records."""
+
 
 def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], reference: str | None) -> RingDown:
     """The result of the decays of all records, with one law."""
     sensors = decays[0].decay.record.channels
-    if reference is not None:
-        require_known("channel", reference, sensors, "ring_down: reference")
     amplitudes: Phasors = np.concatenate([each.estimates.amplitudes for each in decays])
-    column = int(np.argmax(np.abs(amplitudes).mean(axis=0))) if reference is None else sensors.index(reference)
+    column = _most_moving(decays, amplitudes) if reference is None else sensors.index(reference)
     slopes: Phasors = np.concatenate([each.estimates.slopes for each in decays])
     count = len(slopes)
     joint = np.asarray(block_diag(*(each.covariance.reshape(2 * len(each.estimates), -1) for each in decays)))
@@ -44,7 +46,7 @@ def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], re
     result = RingDown(
         channels=sensors,
         reference=sensors[column],
-        unit="rad" if any(word in records[0].source_units.get(sensors[column], "") for word in ("rad", "deg")) else "m",
+        unit=decays[0].decay.record.units[column],
         record=np.concatenate([np.full(len(each.estimates), number) for number, each in enumerate(decays, 1)]),
         times=np.concatenate([each.estimates.times for each in decays]),
         amplitudes=size,
@@ -59,16 +61,36 @@ def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], re
         band_frequencies=band.imag / (2 * np.pi),
         band_damping=-band.real / band.imag,
         shapes=np.stack([shapes.real, shapes.imag], axis=2),
-        noise=np.sqrt(np.mean([each.noise**2 for each in decays], axis=0)),
+        noise=np.sqrt(np.mean([(each.noise / each.decay.record.passed) ** 2 for each in decays], axis=0)),
         periods=np.concatenate([each.estimates.halves for each in decays]) * omega / np.pi,
         degrees=np.array([fit.exponents.shape[1] - 1 for each in decays for fit in each.estimates.fits]),
         bias=bias,
-        other_modes=decays[0].other_modes(),
+        other_modes=np.array(_different([mode for each in decays for mode in each.other_modes])),
         slips=law.slips,
         stiffnesses=law.stiffnesses,
         elastic=law.elastic,
         viscous=law.viscous,
         provenance={"version": dalembert.__version__, "data": [measured.fingerprint for measured in records]},
     )
-    findings = [finding for each in decays for finding in record_findings(each.decay)]
-    return replace(result, findings=(*findings, *result_findings(result, law)))
+    starts = [finding for number, each in enumerate(decays, 1) for finding in record_findings(each.decay, number)]
+    return replace(result, findings=(*starts, *result_findings(result, law)))
+
+
+def _most_moving(decays: list[IdentifiedDecay], amplitudes: Phasors) -> int:
+    """The channel that moves most among those with little noise that measure what the best of them does."""
+    strengths, units = np.mean([each.strengths for each in decays], axis=0), decays[0].decay.record.units
+    best = int(np.argmax(strengths))
+    alike = [
+        strength > CLEAR * strengths[best] and unit == units[best]
+        for strength, unit in zip(strengths, units, strict=True)
+    ]
+    return int(np.argmax(np.where(alike, np.abs(amplitudes).mean(axis=0), -1.0)))
+
+
+def _different(frequencies: list[float]) -> list[float]:
+    """Frequencies in their order, those once that are alike."""
+    result: list[float] = []
+    for frequency in sorted(frequencies):
+        if not result or frequency > (1 + ALIKE) * result[-1]:
+            result.append(frequency)
+    return result

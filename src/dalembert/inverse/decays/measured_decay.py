@@ -5,14 +5,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from dalembert.data import Measurements
-from dalembert.data.filtering import even_spacing
-from dalembert.errors import DataError, counted, require_known
+from dalembert.errors import DataError, InputError, counted, repeated, require_known
 from dalembert.inverse.decays.decay_record import DecayRecord
-from dalembert.inverse.decays.sensors import QUANTITIES, quantity_of
-from dalembert.inverse.mistakes.patterns import plateaus
+from dalembert.inverse.decays.sensors import quantity_of
 
-CONTACT = 0.02
-"""Part of the largest force below which the hammer has left the structure."""
+CONTACT, NOISE, QUIET = 0.02, 8.0, 5
+"""Part of the largest force, and of its median, below which a number of samples say that the hammer has left."""
+UNEVEN = 0.02
+"""Relative difference of steps that is no gap."""
 
 
 def measured_decay(
@@ -27,37 +27,54 @@ def measured_decay(
     InputError
         For an unknown channel or quantity, and channels that measure nothing that is known.
     """
-    for name in (*(channels or ()), *([force] if force else [])):
+    named = [*(channels or ()), *([force] if force else []), *(quantity if isinstance(quantity, Mapping) else ())]
+    for name in named:
         require_known("channel", name, data.channels, "ring_down")
     chosen = tuple(channels or (name for name in data.channels if name != force))
+    if several := repeated(chosen):
+        raise InputError(f"ring_down: channels names {', '.join(map(repr, several))} more than once. Name each once")
     columns = [data.channels.index(name) for name in chosen]
-    orders = tuple(QUANTITIES[quantity_of(data, name, quantity)] for name in chosen)
+    orders, units = zip(*(quantity_of(data, name, quantity) for name in chosen), strict=True)
     times, values = data.coordinate.values, data.values[:, columns]
     if data.coordinate.unit != "s":
         raise DataError(f"ring_down: the samples lie along the {data.coordinate.name}; expected times in s")
-    step = even_spacing(times)
     rows = ~np.isfinite(values).all(axis=1)
     if rows.any():
         raise DataError(
             f"ring_down: the decay has {counted(int(rows.sum()), 'missing sample')}, the first at "
             f"{times[np.argmax(rows)]:.6g} s. Give the part without gaps, by Measurements.between"
         )
+    apart = np.diff(times)
+    step = float(np.mean(apart)) if len(apart) else 1.0
+    uneven = np.flatnonzero(np.abs(apart - step) > UNEVEN * step)
+    if len(uneven) or not len(apart):
+        place = f"behind {times[uneven[0]]:.6g} s " if len(uneven) else ""
+        raise DataError(
+            f"ring_down: the samples {place}are not evenly spaced. Give a part without gaps, by Measurements.between, "
+            "or resample the record, by Measurements.resampled"
+        )
     for name, column in zip(chosen, values.T, strict=True):
-        ends = plateaus(column)
-        if ends.any():
-            at = times[np.argmax(ends)]
-            raise DataError(
-                f"ring_down: {counted(int(ends.sum()), 'sample')} of {name!r} are clipped at "
-                f"{np.abs(column[ends]).max():.4g}, the first at {at:.6g} s. Hit more softly, take a larger range, or "
-                "give the part after the last clipped sample, by Measurements.between"
-            )
-    record = DecayRecord(float(times[0]), step, values, chosen, orders)
+        if not np.ptp(column) > 0:
+            raise DataError(f"ring_down: {name!r} is {column[0]:.4g} at all times. Leave it out, by channels=[...]")
+    # A constant is fitted in each window; without it sizes of the motion are those of the vibration.
+    values = values - np.median(values, axis=0)
+    record = DecayRecord(float(times[0]), step, values, chosen, orders, units)
     if force is None:
         return record
-    pushed = np.abs(data.values[:, data.channels.index(force)])
-    top = float(np.nanmax(pushed))
-    if not top > 0:
-        raise DataError(f"ring_down: the force {force!r} is 0 at all times. Name the hammer's channel, or leave it out")
-    # Two samples behind the end of the pulse, since the sensor's filter has spread it.
-    last = int(np.flatnonzero(pushed > CONTACT * top)[-1])
-    return record.between(float(times[min(last + 2, len(times) - 1)]), float(times[-1]))
+    pushed = data.values[:, data.channels.index(force)]
+    pushed = np.abs(
+        np.nan_to_num(pushed - np.nanmedian(pushed)) if np.isfinite(pushed).any() else np.zeros(len(pushed))
+    )
+    top = int(np.argmax(pushed))
+    level = max(CONTACT * pushed[top], NOISE * float(np.median(pushed)))
+    if not pushed[top] > level:
+        raise DataError(f"ring_down: the force {force!r} has no pulse. Name the hammer's channel, or leave it out")
+    # The first samples behind the peak that all are small; the sensor's filter has spread the end of the pulse.
+    small = np.convolve(pushed[top:] <= level, np.ones(QUIET), mode="valid")
+    quiet = np.flatnonzero(small == QUIET)
+    if not len(quiet):
+        raise DataError(
+            f"ring_down: the force {force!r} does not end. Give the start of the free decay, start=..., and leave the "
+            "force out"
+        )
+    return record.between(float(times[top + quiet[0]]), float(times[-1]))

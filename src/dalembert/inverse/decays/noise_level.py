@@ -5,6 +5,8 @@ import numpy as np
 from dalembert.inverse.decays.record_windows import WindowEstimates
 from dalembert.inverse.decays.sensors import Sensors
 
+LEAST = 1e-3
+"""Part of the deviations of a first look below which noise is not estimated."""
 BAND = (0.5, 1.5)
 """Lines from which the noise is estimated, as parts of the frequency of the mode."""
 
@@ -27,4 +29,4 @@ def noise_at_mode(estimates: WindowEstimates, sensors: Sensors) -> np.ndarray:
         for channel, order in enumerate(sensors.orders):
             taken = [np.sum(np.abs(waves @ columns) ** 2) for columns in (fit.bases[order], fit.tangents[channel].T)]
             expected[channel] += len(lines) * np.sum(taper**2) - sum(taken)
-    return np.sqrt(power / expected)
+    return np.maximum(np.sqrt(power / expected), LEAST * sensors.deviations)

@@ -31,31 +31,43 @@ def with_other_modes(decay: FreeDecay) -> FreeDecay:
                 decay = better
             else:
                 break
-            decay = decay.with_noise()
-    return decay
+            decay = with_ends(decay.with_noise())
+    return with_ends(decay) if len(decay.rates.slopes) > 1 else decay
 
 
 def with_mode(decay: FreeDecay, line: float, periods: float) -> FreeDecay | None:
-    """With a mode at the frequency of a line, Hz; None where none fits."""
+    """With a mode at the frequency of a line, Hz; None where none that decays fits."""
     guess = replace(decay, rates=decay.rates.with_mode(2 * np.pi * line * (1j - LIGHT), np.inf))
-    fits = guess.windows(periods, 2)
-    last = len(guess.rates.slopes) - 1
-    near = [
-        place
-        for place, fit in enumerate(fits.fits)
-        if len(fit.exponents) == last + 1
-        and abs(fit.slope(0.0, last).imag / (2 * np.pi) - line) < APART * decay.frequency / periods
-    ]
+    fits, last = guess.windows(periods, 2), len(guess.rates.slopes) - 1
+    beside = APART * decay.frequency / periods
+    others = decay.rates.slopes[1:, 0].imag / (2 * np.pi)
+    near = []
+    for window, row in fits.with_mode(last):
+        slope = fits.fits[window].slope(0.0, row)
+        frequency = slope.imag / (2 * np.pi)
+        if slope.real < 0 and abs(frequency - line) < beside and np.all(np.abs(others - frequency) > beside / 2):
+            near.append((window, row))
     if not near:
         return None
-    strongest = min(near, key=lambda place: fits.fits[place].misfit_over(last))
-    fit = fits.fits[strongest]
-    slope, rates = fit.slope(0.0, last), decay.rates
+    best, row = min(near, key=lambda place: fits.fits[place[0]].misfit_over(place[1]))
+    rates, windows = decay.rates, [window for window, _ in near]
     if len(near) > 1 and abs(line / decay.frequency - 1) < HALF_BAND:
         # Within the band of the filter the beat of both modes is in the rates: windows that separate them have none.
-        rates = rates.with_first(fits.middles[near], np.array([fits.fits[place].slope(0.0) for place in near]))
-    # It ends where its amplitude comes to that of the noise in a window: a wave of n samples has the deviation √(2/n).
-    sizes = np.abs(fit.amplitudes[last]) * np.abs(slope) ** np.array(decay.record.orders)
-    signal = float(np.max(sizes / decay.sensors.deviations)) * np.sqrt(len(fit.residuals) / 2)
-    duration = np.log(max(signal / FAINT, 1.0)) / max(-slope.real, 1e-12)
-    return replace(decay, rates=rates.with_mode(slope, fits.middles[strongest] + duration))
+        rates = rates.with_first(fits.middles[windows], np.array([fits.fits[window].slope(0.0) for window in windows]))
+    return replace(decay, rates=rates.with_mode(fits.fits[best].slope(0.0, row), np.inf))
+
+
+def with_ends(decay: FreeDecay) -> FreeDecay:
+    """With the times at which other modes fall below the noise, by their amplitudes in the first windows."""
+    fits = decay.windows(max(LOOKS[0], decay.shortest), 2)
+    orders, ends = np.array(decay.record.orders), [np.inf]
+    for mode, slope in enumerate(decay.rates.slopes[1:, 0], 1):
+        ends.append(np.inf)
+        for window, row in fits.with_mode(mode)[:1]:
+            fit = fits.fits[window]
+            # A wave of n samples has the deviation √(2/n).
+            sizes = np.abs(fit.amplitudes[row]) * np.abs(slope) ** orders / decay.sensors.deviations
+            signal = float(np.max(sizes)) * np.sqrt(len(fit.residuals) / 2)
+            duration = np.log(max(signal / FAINT, 1.0)) / max(-slope.real, 1e-12)
+            ends[-1] = float(fits.middles[window]) + duration
+    return replace(decay, rates=replace(decay.rates, ends=tuple(ends)))

@@ -13,6 +13,9 @@ from dalembert.inverse.decays.decay_record import DecayRecord
 from dalembert.inverse.decays.sensors import Phasors, Sensors
 from dalembert.inverse.decays.window_fit import HARMONICS, OTHERS, Window, WindowFit, fit_window
 
+OVERLAP = 4
+"""Windows that a sample lies in."""
+
 
 class Place(NamedTuple):
     """Where a window lies: its middle and half its length, s, and the degree of its polynomials."""
@@ -50,14 +53,14 @@ class Rates:
         """With the first mode's rates −σ + iω at times, (times,)."""
         return Rates(times, np.vstack([slopes[None], self.at(times)[1:]]), self.ends)
 
-    def modes(self, time: float) -> np.ndarray:
-        """Numbers of the modes that are above the noise at a time."""
-        return np.flatnonzero(np.array(self.ends) > time)
+    def modes(self, begin: float) -> np.ndarray:
+        """Numbers of the modes that are above the noise at the begin of a window."""
+        return np.flatnonzero(np.array(self.ends) > begin)
 
     def exponents(self, middle: float, half: float, degree: int) -> Phasors:
         """Coefficients of ρ (modes, degree + 1) in a window, as a first guess."""
         places = np.linspace(-1, 1, 2 * degree + 3)
-        slopes = self.at(middle + half * places)[self.modes(middle)] * half
+        slopes = self.at(middle + half * places)[self.modes(middle - half)] * half
         fits = [polynomial.polyfit(places, part, degree - 1) for part in (slopes.T.real, slopes.T.imag)]
         exponents = np.stack([polynomial.polyint(column) for column in (fits[0] + 1j * fits[1]).T])
         exponents[1:, OTHERS + 1 :] = 0.0
@@ -78,6 +81,7 @@ class WindowEstimates:
     slopes: Phasors
     amplitudes: Phasors
     fits: tuple[WindowFit, ...]
+    modes: tuple[np.ndarray, ...]
     gains: tuple[np.ndarray, ...]
     first: tuple[int, ...]
 
@@ -88,6 +92,10 @@ class WindowEstimates:
     def halves(self) -> np.ndarray:
         return np.array([fit.window.half for fit in self.fits])
 
+    def with_mode(self, mode: int) -> list[tuple[int, int]]:
+        """Windows that a mode is fitted in, and its row among the modes of each."""
+        return [(window, numbers.tolist().index(mode)) for window, numbers in enumerate(self.modes) if mode in numbers]
+
     def kept(self, rows: np.ndarray) -> "WindowEstimates":
         """The windows of a mask."""
         places = np.flatnonzero(rows)
@@ -97,6 +105,7 @@ class WindowEstimates:
             slopes=self.slopes[rows],
             amplitudes=self.amplitudes[rows],
             fits=tuple(self.fits[place] for place in places),
+            modes=tuple(self.modes[place] for place in places),
             gains=tuple(self.gains[place] for place in places),
             first=tuple(self.first[place] for place in places),
         )
@@ -150,6 +159,7 @@ def estimate(
         slopes=np.array([fit.slope(place) for fit, place in pairs], dtype=complex),
         amplitudes=np.array([fit.at(place) for fit, place in pairs]).reshape(len(fits), len(record.channels)),
         fits=tuple(fits),
+        modes=tuple(rates.modes(middle - fit.window.half) for middle, fit in zip(middles, fits, strict=True)),
         gains=tuple(fit.slope_gains(place) for fit, place in pairs),
         first=tuple(firsts),
     )

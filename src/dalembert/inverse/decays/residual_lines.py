@@ -54,6 +54,7 @@ def strongest_line(fits: WindowEstimates, decay: FreeDecay, periods: float) -> L
         if is_line and relative > VISIBLE * size and power[place] > strongest:
             frequency, strongest = float(frequencies[place]), float(power[place])
             multiple = round(frequency / float(np.median(visited)))
-            is_harmonic = multiple > 1 and multiple * low - beside < frequency < multiple * high + beside
+            close = beside / (2 * APART)
+            is_harmonic = multiple > 1 and multiple * low - close < frequency < multiple * high + close
             best = Line(frequency, multiple if is_harmonic else 0)
     return best

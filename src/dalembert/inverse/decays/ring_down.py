@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from dalembert.argument_readers import names_of
 from dalembert.data import Measurements
-from dalembert.errors import InputError
-from dalembert.inverse.decays.first_look import first_look, mode_frequency
+from dalembert.errors import InputError, require_known
+from dalembert.inverse.decays.first_look import first_look
 from dalembert.inverse.decays.identified_decay import identified_decay
 from dalembert.inverse.decays.joined_decays import joined_decays
 from dalembert.inverse.decays.measured_decay import measured_decay
@@ -83,10 +83,12 @@ def ring_down(
                 f"{', '.join(records[0].channels)}, as in the first"
             )
     chosen_channels = None if channels is None else names_of(channels, "ring_down", "channels")
+    if reference is not None:
+        require_known("channel", reference, chosen_channels or records[0].channels, "ring_down: reference")
     decays = []
     for measured in records:
         record = measured_decay(measured, chosen_channels, quantity, force)
-        if frequency is None:
-            frequency = mode_frequency(record, None)
-        decays.append(identified_decay(first_look(record, mode_frequency(record, frequency), start)))
+        decays.append(identified_decay(first_look(record, frequency, start)))
+        # Repetitions show the mode of the first record.
+        frequency = frequency or decays[0].decay.frequency
     return joined_decays(decays, records, reference)

@@ -19,39 +19,39 @@ MISFIT = 4.0
 """Median distance of decay rates from the equivalent law, in deviations, that one mode does not have."""
 
 
-def record_findings(decay: FreeDecay) -> Iterator[Finding]:
-    """Yield what one record shows."""
+def record_findings(decay: FreeDecay, number: int) -> Iterator[Finding]:
+    """Yield what one record shows. ``number``: of the record, from 1."""
     if not decay.clean:
         yield Finding(
             "start-not-free",
             "warning",
-            {"start": decay.record.start},
-            f"No window behind the largest amplitude fits a free decay; the first one begins at "
+            {"start": decay.record.start, "record": number},
+            f"No window behind the largest amplitude of record {number} fits a free decay; the first one begins at "
             f"{decay.record.start:.6g} s.",
             "Give the time at which the hammer has left the structure, start=..., or the channel of its force.",
-        )
-    modes = decay.rates.slopes[1:, 0].imag / (2 * np.pi)
-    if len(modes):
-        near = modes[np.argmin(np.abs(modes - decay.frequency))]
-        text = ", ".join(f"{mode:.5g} Hz" for mode in modes)
-        yield Finding(
-            "other-modes",
-            "note",
-            {"modes": modes.tolist(), "nearest": float(near)},
-            f"Other modes vibrate in the decay and are fitted with it: {text}.",
-            "",
         )
 
 
 def result_findings(result: RingDown, law: EquivalentLaw) -> Iterator[Finding]:
     """Yield what all records together show."""
+    if len(result.other_modes):
+        frequency = float(np.median(result.frequencies))
+        nearest = float(result.other_modes[np.argmin(np.abs(result.other_modes - frequency))])
+        text = ", ".join(f"{mode:.5g} Hz" for mode in result.other_modes)
+        yield Finding(
+            "other-modes",
+            "note",
+            {"modes": result.other_modes.tolist(), "nearest": nearest},
+            f"Other modes vibrate in the decay and are fitted with it: {text}.",
+            "",
+        )
     sizes = result.bias / (2 * np.pi * result.frequency_deviations)
     if np.max(sizes) > BIASED:
-        worst = int(np.argmax(result.bias))
+        worst = int(np.argmax(sizes))
         yield Finding(
             "window-bias",
             "note",
-            {"bias": float(np.max(result.bias)), "amplitude": float(result.amplitudes[worst])},
+            {"bias": float(result.bias[worst]), "amplitude": float(result.amplitudes[worst])},
             f"Frequency or damping change within the shortest windows: at {result.amplitudes[worst]:.4g} {result.unit} "
             f"that changes the frequency by about {result.bias[worst] / (2 * np.pi):.2g} Hz, and the damping ratio by "
             f"{100 * result.bias[worst] / (2 * np.pi * result.frequencies[worst]):.2g} %.",

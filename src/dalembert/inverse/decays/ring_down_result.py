@@ -9,12 +9,11 @@ import numpy as np
 from dalembert.data import Measurements
 from dalembert.findings import Finding
 from dalembert.forward import Coordinate
+from dalembert.inverse.decays.record_windows import OVERLAP
 from dalembert.results import Result
 from dalembert.stored_fields import Labels, Over
 from dalembert.tables import Table, cells, counted, labelled, percent, shown
 
-OVERLAP = 4
-"""Windows that a sample lies in."""
 UNUSUAL = 3.0
 """Deviation over the median one from which a point is no data of a model."""
 
@@ -52,7 +51,7 @@ class RingDown(Result):
     shapes : array, shape (points, channels, 2)
         Real and imaginary part of the displacements, that of the reference 1.
     noise : array, shape (channels,)
-        Standard deviations of the noise at the frequency of the mode, in the unit of the channel.
+        Standard deviations of the noise, by its power at the frequency of the mode, in the unit of the channel.
     periods : array, shape (points,)
         Lengths of the windows, in periods of the mode.
     degrees : array of int, shape (points,)
@@ -64,7 +63,8 @@ class RingDown(Result):
     slips, stiffnesses : array, shape (sliders,)
         The equivalent law: amplitudes at which parallel sliders slip, and their stiffnesses over the modal mass, 1/s².
     elastic : array, shape (3,)
-        Its springs, with force a, a³ and a⁵ at the largest amplitude, over the modal mass, 1/s².
+        Stiffnesses in phase of its springs of 1, a² and a⁴ at the largest amplitude, over the modal mass, 1/s². That of
+        a² is three quarters of the coefficient of a cubic force, that of a⁴ five eighths of a quintic one.
     viscous : float
         Its viscous damping over the modal mass, 1/s.
     provenance : mapping
@@ -129,9 +129,11 @@ class RingDown(Result):
         Points of windows that overlap share noise; each fourth point is returned, so that windows touch. Points whose
         deviation is more than three times the median one are left out.
         """
-        sizes = self.damping_deviations / np.median(self.damping_deviations)
-        rows = np.flatnonzero(sizes <= UNUSUAL)[::OVERLAP]
-        rows = rows[np.argsort(self.amplitudes[rows])]
+        usual = self.damping_deviations <= UNUSUAL * np.median(self.damping_deviations)
+        chosen = [np.flatnonzero(usual & (self.record == number))[::OVERLAP] for number in np.unique(self.record)]
+        rows = np.concatenate(chosen)
+        # In the order of the amplitudes, each of which data have once.
+        rows = rows[np.unique(self.amplitudes[rows], return_index=True)[1]]
         along = Coordinate("amplitude", self.unit, self.amplitudes[rows])
         deviations = {
             "frequency": float(np.sqrt(np.mean(self.frequency_deviations[rows] ** 2))),

@@ -41,11 +41,11 @@ class Sensors:
         }
 
 
-def quantity_of(data: Measurements, name: str, quantity: str | Mapping[str, str] | None) -> str:
-    """What a channel measures: as given, or by its unit."""
+def quantity_of(data: Measurements, name: str, quantity: str | Mapping[str, str] | None) -> tuple[int, str]:
+    """Derivatives by time that a channel sees, and the unit of its displacement: as stated, or by its unit."""
+    units = list(map(si_unit, readings(data.source_units.get(name, ""))))
     word = quantity if isinstance(quantity, str) else (quantity or {}).get(name)
     if word is None:
-        units = map(si_unit, readings(data.source_units.get(name, "")))
         word = next((_BY_UNIT[unit] for unit in units if unit in _BY_UNIT), None)
     if word is None:
         raise InputError(
@@ -53,4 +53,5 @@ def quantity_of(data: Measurements, name: str, quantity: str | Mapping[str, str]
             f"Say which, for example quantity={{{name!r}: 'acceleration'}}"
         )
     require_known("quantity", word, QUANTITIES, "ring_down")
-    return word
+    angle = any(unit.startswith("rad") for unit in units[:1])
+    return QUANTITIES[word], "" if word == "strain" else "rad" if angle else "m"

@@ -15,6 +15,7 @@ from dalembert.inverse.decays.decay_record import DecayRecord
 from dalembert.inverse.decays.equivalent_law import EquivalentLaw
 from dalembert.inverse.decays.free_decay import FreeDecay
 from dalembert.inverse.decays.record_windows import (
+    OVERLAP,
     Place,
     Rates,
     WindowEstimates,
@@ -22,7 +23,6 @@ from dalembert.inverse.decays.record_windows import (
     even_places,
     half_length,
 )
-from dalembert.inverse.decays.ring_down_result import OVERLAP
 from dalembert.inverse.decays.sensors import Phasors
 
 DEGREES = (2, 4)
@@ -99,10 +99,11 @@ def law_decay(decay: FreeDecay, rates: Rates, first: WindowEstimates) -> DecayRe
     record, middle = decay.record, len(first) // 2
     values = np.zeros(record.values.shape)
     for mode, slopes in enumerate(rates.at(record.times)):
-        # Other modes by the first window, the first mode by that through which its rates go.
-        place = middle if mode == 0 else 0
-        if mode >= len(first.fits[place].amplitudes):
+        # Other modes by their first window, the first mode by that through which its rates go.
+        windows = first.with_mode(mode)
+        if not windows:
             continue
+        place, row = windows[middle if mode == 0 else 0]
         near = int(np.argmin(np.abs(record.times - first.middles[place])))
         # ln u = ∫ λ dt, by the trapezoidal rule at the samples.
         logs = np.concatenate([[0], np.cumsum((slopes[1:] + slopes[:-1]) / 2 * record.step)])
@@ -110,7 +111,7 @@ def law_decay(decay: FreeDecay, rates: Rates, first: WindowEstimates) -> DecayRe
         change = np.gradient(slopes, record.step)
         seen = {0: wave, 1: slopes * wave, 2: (slopes**2 + change) * wave}
         for channel, order in enumerate(record.orders):
-            values[:, channel] += (first.fits[place].amplitudes[mode, channel] * seen[order]).real
+            values[:, channel] += (first.fits[place].amplitudes[row, channel] * seen[order]).real
     return DecayRecord(record.start, record.step, values, record.channels, record.orders)
 
 

@@ -20,6 +20,8 @@ from scipy.linalg import solve_triangular
 
 from dalembert.inverse.decays.sensors import Phasors, Sensors
 
+LARGEST = 50.0
+"""Logarithm of the largest growth within a window: fits beyond it do not converge."""
 STEPS = 30
 """Gauss–Newton steps of a fit at most."""
 SETTLED, ROUGHLY = 1e-6, 1e-2
@@ -51,7 +53,8 @@ class Window:
     def terms(self, exponent: Phasors, order: int, degree: int) -> Iterator[Phasors]:
         """Yield D^order (x^d e^ρ) for d = 0 to the degree, (samples,), with D the derivative by time."""
         places, rate = self.places, polynomial.polyder(exponent)
-        growth = np.exp(polynomial.polyval(places, exponent))
+        rho = polynomial.polyval(places, exponent)
+        growth = np.exp(np.clip(rho.real, -LARGEST, LARGEST) + 1j * rho.imag)
         for power in range(degree + 1):
             factor = np.zeros(power + 1, dtype=complex)
             factor[power] = 1.0
@@ -69,7 +72,7 @@ class Window:
             yield -mode[0].imag
         rho = polynomial.polyval(places, exponents[0])
         for harmonic in harmonics:
-            wave = np.exp(rho.real + 1j * harmonic * rho.imag)
+            wave = np.exp(np.clip(rho.real, -LARGEST, LARGEST) + 1j * harmonic * rho.imag)
             for factor in (1.0, places):
                 yield factor * wave.real
                 yield factor * wave.imag

@@ -42,7 +42,7 @@ class StructureResponse(ABC):
 
     @property
     def fingerprint(self) -> str:
-        """Hash of the system at the parameters' first guesses, the channels, the samples and the method."""
+        """Hash of the system at the parameters' first guesses, the channels and the method."""
         return self._fingerprint
 
     @cached_property

@@ -43,6 +43,8 @@ def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], re
     spread = np.sqrt(np.einsum("iaia->ia", covariance))
     band: Phasors = np.concatenate([each.band for each in decays])
     shapes = amplitudes / amplitudes[:, [column]]
+    # Each mode once, of those that the records share.
+    modes = np.sort(np.concatenate([each.other_modes for each in decays]))
     result = RingDown(
         channels=sensors,
         reference=sensors[column],
@@ -65,7 +67,7 @@ def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], re
         periods=np.concatenate([each.estimates.halves for each in decays]) * omega / np.pi,
         degrees=np.array([fit.exponents.shape[1] - 1 for each in decays for fit in each.estimates.fits]),
         bias=bias,
-        other_modes=np.array(_different([mode for each in decays for mode in each.other_modes])),
+        other_modes=modes[np.diff(modes, prepend=0.0) > ALIKE * modes],
         slips=law.slips,
         stiffnesses=law.stiffnesses,
         elastic=law.elastic,
@@ -85,12 +87,3 @@ def _most_moving(decays: list[IdentifiedDecay], amplitudes: Phasors) -> int:
         for strength, unit in zip(strengths, units, strict=True)
     ]
     return int(np.argmax(np.where(alike, np.abs(amplitudes).mean(axis=0), -1.0)))
-
-
-def _different(frequencies: list[float]) -> list[float]:
-    """Frequencies in their order, those once that are alike."""
-    result: list[float] = []
-    for frequency in sorted(frequencies):
-        if not result or frequency > (1 + ALIKE) * result[-1]:
-            result.append(frequency)
-    return result

@@ -65,6 +65,9 @@ def ring_down(
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from dalembert.data import Measurements
+    >>> from dalembert.inverse import ring_down
     >>> times = np.arange(6000) / 1000
     >>> signal = np.exp(-2 * np.pi * 10 * 0.01 * times) * np.cos(2 * np.pi * 10 * times)
     >>> noise = 1e-3 * np.random.default_rng(0).normal(size=len(times))

@@ -72,7 +72,7 @@ class BackboneResponse(StructureResponse):
     >>> model.evaluate(np.array([[0.2]])).values.round(4).tolist()
     [[[0.1593], [0.1707]]]
     >>> model.jacobian(np.array([0.2])).round(4).tolist()
-    [[[0.0006]], [[0.0559]]]
+    [[[0.0006]], [[0.0562]]]
     """
 
     builder: Callable[..., VibrationSystem]

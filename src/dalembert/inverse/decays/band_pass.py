@@ -33,7 +33,7 @@ class AnalyticSignal:
 
         ``noise`` (channels,): deviations by which the channels are weighted.
         """
-        slopes = np.full(len(middles), np.nan + 0j)
+        slopes = np.full(len(middles), complex(np.nan, np.nan))
         for point, (middle, half) in enumerate(zip(middles, halves, strict=True)):
             rows = np.abs(self.times - middle) <= half
             if self.times[0] > middle - half or self.times[-1] < middle + half:
@@ -74,7 +74,7 @@ def analytic_signal(record: DecayRecord, frequency: float, half_band: float = HA
     low_pass = np.asarray(firwin(2 * reach + 1, half_band * frequency, fs=1 / record.step, window="blackman"))
     taps = 2 * low_pass * np.exp(2j * np.pi * frequency * record.step * np.arange(-reach, reach + 1))
     if len(taps) > len(record.values):
-        return AnalyticSignal(np.full(1, np.nan), np.full((1, len(record.orders)), np.nan + 0j))
+        return AnalyticSignal(np.full(1, np.nan), np.full((1, len(record.orders)), complex(np.nan, np.nan)))
     filtered = oaconvolve(record.values, taps[:, None], mode="valid", axes=0)
     times = record.times[reach : len(record.values) - reach]
     logs = np.log(np.maximum(np.abs(filtered), np.finfo(float).tiny)) + 1j * np.unwrap(np.angle(filtered), axis=0)

@@ -15,6 +15,8 @@ from dalembert.inverse.decays.sensors import Phasors
 
 CLEAR = 0.1
 """Strength of a channel over that of the best from which it may be the reference."""
+NEXT = 0.02
+"""Relative step of the amplitude over which the change of the law is taken."""
 ALIKE = 0.01
 """Relative difference of the frequencies of one mode in several records."""
 
@@ -40,6 +42,13 @@ def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], re
     transform[:, 1, 0] = -ratio / omega
     transform[:, 1, 1] = -ratio * sigma / omega**2
     covariance = np.einsum("iab,ibjc,jdc->iajd", transform, joint.reshape(count, 2, count, 2), transform)
+    # The amplitude has an error, too: where the mode changes with it, the values at this amplitude are less certain.
+    errors = np.concatenate([each.amplitude_deviations(column) for each in decays])
+    change = (law.slopes(size * (1 + NEXT)) - law.slopes(size * (1 - NEXT))) / (2 * NEXT)
+    slope = np.stack([change.imag / (2 * np.pi), -(change.real + sigma / omega * change.imag) / omega], axis=1)
+    points = np.arange(count)
+    for quantity in range(2):
+        covariance[points, quantity, points, quantity] += (slope[:, quantity] * errors / size) ** 2
     spread = np.sqrt(np.einsum("iaia->ia", covariance))
     band: Phasors = np.concatenate([each.band for each in decays])
     shapes = amplitudes / amplitudes[:, [column]]
@@ -52,7 +61,7 @@ def joined_decays(decays: list[IdentifiedDecay], records: list[Measurements], re
         record=np.concatenate([np.full(len(each.estimates), number) for number, each in enumerate(decays, 1)]),
         times=np.concatenate([each.estimates.times for each in decays]),
         amplitudes=size,
-        amplitude_deviations=np.concatenate([each.amplitude_deviations(column) for each in decays]),
+        amplitude_deviations=errors,
         frequencies=frequencies / (2 * np.pi),
         frequency_deviations=spread[:, 0],
         damping=damping,

@@ -46,6 +46,8 @@ def test_a_linear_mode_is_exact_at_every_kind_of_sensor(quantity, order):
     assert result.amplitudes == pytest.approx(np.exp(-sigma * result.times), rel=1e-6)
     assert result.success
     known = np.isfinite(result.band_damping)
+    assert np.array_equal(known, np.isfinite(result.band_frequencies))
+    assert 0 < known.sum() < len(result)
     assert result.band_damping[known] == pytest.approx(np.full(known.sum(), DAMPING), rel=1e-2)
 
 

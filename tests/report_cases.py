@@ -20,6 +20,7 @@ from dalembert.study import load, run_study
 from dalembert.study.tasks.assessments import foreseen
 from dalembert.surrogate import Adaptive, Tensor, TotalDegree
 from dalembert.uncertainty import Chebyshev, LatinHypercube, MonteCarlo, Optimise, Scan, Taylor, Vertex
+from decay_cases import DECAY_CASES
 from free_oscillations import NOISE, TRUTH, oscillation, oscillator, recorded, rubbing
 from free_oscillations import TIMES as OSCILLATING
 from frequency_cases import FREQUENCY_CASES
@@ -1141,5 +1142,6 @@ CASES: dict[str, Case] = {
     **POSTERIOR_CASES,
     **SENSITIVITY_CASES,
     **REGULARISED_CASES,
+    **DECAY_CASES,
     **SPECIMEN_CASES,
 }

@@ -10,8 +10,10 @@ from dalembert.inverse.decays.identified_decay import identified_decay
 from dalembert.inverse.decays.joined_decays import joined_decays
 from dalembert.inverse.decays.measured_decay import measured_decay
 from dalembert.inverse.decays.ring_down_result import RingDown
+from dalembert.threads import single_thread
 
 
+@single_thread()
 def ring_down(
     data: Measurements | Sequence[Measurements],
     frequency: float | None = None,

@@ -1,9 +1,9 @@
 r"""From the decay of a mode to its periodic motion, by the friction law that both have in common.
 
-A decaying motion is no periodic one: it is slower by a part of order :math:`\zeta^2`, friction sees the amplitude of
-the last reversal, and the energy that it loses is that of the motion in which it is stored. These differences are of
-second order, and amount to 10 % of the damping of a joint that holds a tenth of the stiffness. They follow from the
-law, and the law follows from the decay itself:
+A decaying motion differs from a periodic one. It is slower by a part of order :math:`\zeta^2`. Friction depends on the
+amplitude of the last reversal. The energy that is lost comes from the stored energy. These differences are of second
+order, and amount to 10 % of the damping of a joint that has a tenth of the stiffness. They follow from the law, and the
+law follows from the decay itself:
 
 With a modal mass of 1, elastic stiffness, viscous damping :math:`c` and sliders in parallel (an Iwan model; Masing's
 rules), of stiffness :math:`\kappa_i` that slip at :math:`x_i`, the motion :math:`a \cos\varphi` with the decrement
@@ -173,9 +173,9 @@ class _Terms:
         # Unknowns in parts of the mean square of ω, c in parts of its root; nonlinear springs of both signs.
         units = np.full(matrix.shape[1], mean)
         units[ELASTIC] = np.sqrt(mean)
-        held = np.sqrt(penalty) * np.eye(len(units))
-        held[0] = held[ELASTIC] = 0.0
-        design = np.vstack([matrix * units, held])
+        weights = np.sqrt(penalty) * np.eye(len(units))
+        weights[0] = weights[ELASTIC] = 0.0
+        design = np.vstack([matrix * units, weights])
         both = np.column_stack([design, -design[:, 1:ELASTIC]])
         numbers = nnls(both, np.concatenate([right, np.zeros(len(units))]), maxiter=50 * both.shape[1])[0]
         result = numbers[: len(units)].copy()

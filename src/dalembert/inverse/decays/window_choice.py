@@ -49,8 +49,11 @@ class Option:
 
     def at(self, begin: float) -> tuple[float, float]:
         """Square of the bias and variance of the window that begins at a time."""
-        logs = (np.log(np.maximum(part, 1e-300)) for part in (self.bias, self.variance))
-        return tuple(float(np.exp(np.interp(begin, self.begins, part))) for part in logs)  # type: ignore[return-value]
+        bias, variance = (np.log(np.maximum(part, 1e-300)) for part in (self.bias, self.variance))
+        return (
+            float(np.exp(np.interp(begin, self.begins, bias))),
+            float(np.exp(np.interp(begin, self.begins, variance))),
+        )
 
 
 @dataclass(frozen=True)
